@@ -1,0 +1,55 @@
+"""Anchors: the symbols that stand for physical objects, seen or hidden."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import NamedTuple
+
+from aapa.detections import Box, Position
+
+
+class AnchorStatus(StrEnum):
+    """Why an anchor is believed to be where it is."""
+
+    VISIBLE = "visible"  # aligned with a detection of this frame
+    OCCLUDED = "occluded"  # not seen, something nearer stands in front
+    ATTACHED = "attached"  # not seen, moves with an anchored parent
+    OUT_OF_VIEW = "out-of-view"  # not seen, the camera does not look there
+    MISSING = "missing"  # not seen, and nothing explains why
+
+
+class Attachment(NamedTuple):
+    """`child` is physically bound to move together with `parent`. Plain pairs do as well."""
+
+    child: str
+    parent: str
+
+
+@dataclass(frozen=True, slots=True)
+class Anchor:
+    """The maintained state of one object.
+
+    Args:
+        name: Its symbol, unique and never reused.
+        type: The detector's class.
+        box: Last known (or carried) box, px.
+        status: Why it is believed to be there.
+        parent: The parent it moves with, when `status` is attached.
+        confidence: In [0, 1]; grows with sightings, falls with unexplained misses.
+        position: Centre in the base frame, m, if detections carry one.
+        size: Width and height, m, if detections carry one.
+        last_seen: The update count at which it was last aligned with a detection.
+        reason: One sentence on why it is believed to be there.
+    """
+
+    name: str
+    type: str
+    box: Box
+    status: AnchorStatus
+    parent: str | None = None
+    confidence: float = 0.0
+    position: Position | None = None
+    size: tuple[float, float] | None = None
+    last_seen: int = 0
+    reason: str = ""

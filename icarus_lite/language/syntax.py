@@ -1,0 +1,212 @@
+"""The syntax tree of a domain: what the text says, with the place of every word.
+
+Spans never take part in comparison, so two trees are equal when they mean the same.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+from icarus_lite.symbols import Value, format_value
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """The text a tree was read from. `path` is shown in messages."""
+
+    path: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Span:
+    """A stretch of source text; lines and columns count from 1, the end column is exclusive."""
+
+    line: int
+    column: int
+    end_line: int
+    end_column: int
+
+
+NOWHERE = Span(0, 0, 0, 0)
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """A variable, its name written with the question mark: `?obj`."""
+
+    name: str
+    span: Span = field(default=NOWHERE, compare=False)
+
+    def __str__(self) -> str:
+        return self.name
+
+
+@dataclass(frozen=True, slots=True)
+class Constant:
+    """A symbol, string or number."""
+
+    value: Value
+    span: Span = field(default=NOWHERE, compare=False)
+
+    def __str__(self) -> str:
+        return format_value(self.value)
+
+
+Term: TypeAlias = Variable | Constant
+
+
+@dataclass(frozen=True, slots=True)
+class Atom:
+    """A pattern `(predicate arg … ^attribute value …)`, for percepts, beliefs and actions.
+
+    An action's predicate is written without its leading star.
+    """
+
+    predicate: str
+    args: tuple[Term, ...] = ()
+    attributes: tuple[tuple[str, Term], ...] = ()
+    span: Span = field(default=NOWHERE, compare=False)
+
+    def __str__(self) -> str:
+        words = [self.predicate, *map(str, self.args)]
+        words += [f"^{name} {value}" for name, value in self.attributes]
+        return f"({' '.join(words)})"
+
+    @property
+    def variables(self) -> tuple[str, ...]:
+        """The names of its variables in order of occurrence, repeats included."""
+        terms = (*self.args, *(value for _, value in self.attributes))
+        return tuple(term.name for term in terms if isinstance(term, Variable))
+
+
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """A literal of `:elements`, `:effects` or a goal: an atom or its negation."""
+
+    atom: Atom
+    negated: bool = False
+    span: Span = field(default=NOWHERE, compare=False)
+
+    def __str__(self) -> str:
+        return f"(not {self.atom})" if self.negated else str(self.atom)
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """An expression `(function argument …)` of `:tests` or `:binds`."""
+
+    function: str
+    args: tuple[Expression, ...]
+    span: Span = field(default=NOWHERE, compare=False)
+
+    def __str__(self) -> str:
+        return f"({' '.join([self.function, *map(str, self.args)])})"
+
+
+Expression: TypeAlias = Variable | Constant | Call
+
+
+@dataclass(frozen=True, slots=True)
+class Bind:
+    """One `(?v expression)` of `:binds`."""
+
+    variable: Variable
+    expression: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class PerceptType:
+    """A declared percept type and its attribute names, without markers."""
+
+    name: str
+    attributes: tuple[str, ...]
+    span: Span = field(default=NOWHERE, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class ConceptClause:
+    """One way for a concept to be true. Clauses with one head name are alternatives."""
+
+    head: Atom
+    elements: tuple[Condition, ...] = ()
+    tests: tuple[Call, ...] = ()
+    binds: tuple[Bind, ...] = ()
+    span: Span = field(default=NOWHERE, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class SkillClause:
+    """One way to carry a skill out: primitive with `actions`, a macro with `subskills`.
+
+    Args:
+        head: The skill's name and arguments.
+        elements: Start conditions (`:elements`).
+        tests: Numeric start conditions (`:tests`).
+        holds: Conditions that must keep holding while it runs (`:while`).
+        actions: Commands for the driver, their names without the star.
+        subskills: Skill calls, in order.
+        effects: What will be believed once it has succeeded.
+        timeout_s: Seconds after which it counts as failed, or None.
+    """
+
+    head: Atom
+    elements: tuple[Condition, ...] = ()
+    tests: tuple[Call, ...] = ()
+    holds: tuple[Condition, ...] = ()
+    actions: tuple[Atom, ...] = ()
+    subskills: tuple[Atom, ...] = ()
+    effects: tuple[Condition, ...] = ()
+    timeout_s: float | None = None
+    span: Span = field(default=NOWHERE, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class AttachmentRule:
+    """An attach action, the action that undoes it, and who is child and parent (the paper's AD)."""
+
+    attach: Atom
+    until: Atom | None
+    child: Term
+    parent: Term
+    span: Span = field(default=NOWHERE, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """A named goal for a robot: `(task 1.1 "title" :robot ur5 :goal (…))`."""
+
+    name: str
+    title: str
+    robot: str | None
+    goals: tuple[Condition, ...]
+    span: Span = field(default=NOWHERE, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class DomainTest:
+    """A `(test …)` form: given these percepts and this action, expect these beliefs."""
+
+    name: str
+    percepts: tuple[Atom, ...]
+    actions: tuple[Atom, ...]
+    expect: tuple[Atom, ...]
+    expect_not: tuple[Atom, ...]
+    span: Span = field(default=NOWHERE, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Domain:
+    """A whole domain, as the text states it."""
+
+    name: str
+    documentation: str = ""
+    percepts: tuple[PerceptType, ...] = ()
+    concepts: tuple[ConceptClause, ...] = ()
+    skills: tuple[SkillClause, ...] = ()
+    attachments: tuple[AttachmentRule, ...] = ()
+    tasks: tuple[Task, ...] = ()
+    goals: tuple[Condition, ...] = ()
+    tests: tuple[DomainTest, ...] = ()
+    source: Source = field(default=Source("<text>", ""), compare=False)
