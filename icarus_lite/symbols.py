@@ -38,9 +38,7 @@ def _reads_as_number(text: str) -> bool:
 
 def is_number(value: object) -> bool:
     """Tell whether a value is a finite number (booleans are not numbers here)."""
-    return (
-        isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
-    )
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,54 @@
+# Two commands matter: `make demo` and `make test`. Both set themselves up in .venv and touch
+# nothing else on the machine.
+
+PYTHON ?= $(firstword $(foreach p,python3.11 python3.12 python3,$(if $(shell $(p) -c \
+  'import sys; print((3, 11) <= sys.version_info < (3, 13) or "")' 2>/dev/null),$(p))))
+VENV := .venv
+BIN := $(VENV)/bin
+PACKAGES := icarus_lite aapa runtime
+INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt
+
+.PHONY: demo demo-without test check lint types imports format picture clean help
+
+help: ## list the targets
+	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/'
+
+$(BIN)/python:
+	@test -n "$(PYTHON)" || { echo "icarus-lite needs Python 3.11 or 3.12 (ur-rtde has no newer builds)." >&2; exit 2; }
+	@$(PYTHON) -m venv $(VENV) || { rm -rf $(VENV); echo "No virtual environment could be made: on Debian, apt install python3-venv." >&2; exit 2; }
+
+$(VENV)/.installed: pyproject.toml constraints.txt | $(BIN)/python
+	$(INSTALL) -e '.[cell]'
+	@touch $@
+
+$(VENV)/.installed-dev: pyproject.toml constraints.txt | $(BIN)/python
+	$(INSTALL) -e '.[cell,dev]'
+	@touch $@ $(VENV)/.installed
+
+demo: $(VENV)/.installed ## run task 1.1, "Attach hub cover to case", in the simulated cell
+	$(BIN)/icarus run domains/gearbox.icr --task 1.1
+
+demo-without: $(VENV)/.installed ## the same without attachments: it fails, as in the paper
+	! $(BIN)/icarus run domains/gearbox.icr --task 1.1 --no-attachments
+
+test: $(VENV)/.installed-dev ## run the tests
+	$(BIN)/python -m pytest -q -n 2 --dist loadgroup
+
+check: lint types imports ## everything that reads the code without running it
+
+lint: $(VENV)/.installed-dev ## ruff: rules and layout
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+
+types: $(VENV)/.installed-dev ## mypy, strict
+	$(BIN)/mypy
+
+imports: $(VENV)/.installed-dev ## who may import whom
+	$(BIN)/lint-imports
+
+format: $(VENV)/.installed-dev ## lay the code out
+	$(BIN)/ruff format .
+	$(BIN)/ruff check --fix .
+
+clean: ## remove the virtual environment and what tools left behind
+	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache .hypothesis build dist

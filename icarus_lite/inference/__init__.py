@@ -1,0 +1,37 @@
+"""Inference: percepts and the last actions in, beliefs with their supports out."""
+
+from icarus_lite.inference.attachment import ATTACHED, Hierarchy, Link, advance
+from icarus_lite.inference.closure import Closure
+from icarus_lite.inference.effects import Change, change_of
+from icarus_lite.inference.engine import BeliefState, InferenceEngine, Memory
+from icarus_lite.inference.explanation import Explanation, explain
+from icarus_lite.inference.facts import FactStore, ground, match, percept_fact, unify
+from icarus_lite.inference.matching import Evaluator, Functions, Match, Matcher
+from icarus_lite.inference.supports import Assertion, Derivation, Support
+
+__all__ = [
+    "ATTACHED",
+    "Assertion",
+    "BeliefState",
+    "Change",
+    "Closure",
+    "Derivation",
+    "Evaluator",
+    "Explanation",
+    "FactStore",
+    "Functions",
+    "Hierarchy",
+    "InferenceEngine",
+    "Link",
+    "Match",
+    "Matcher",
+    "Memory",
+    "Support",
+    "advance",
+    "change_of",
+    "explain",
+    "ground",
+    "match",
+    "percept_fact",
+    "unify",
+]

@@ -1,0 +1,178 @@
+"""The inference engine: percepts and the last actions in, beliefs with their supports out."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from icarus_lite.errors import FrameError
+from icarus_lite.inference.attachment import ATTACHED, Hierarchy, advance
+from icarus_lite.inference.closure import Closure
+from icarus_lite.inference.effects import Change, change_by_action
+from icarus_lite.inference.facts import FactStore, percept_fact
+from icarus_lite.inference.matching import Evaluator, Functions
+from icarus_lite.inference.supports import Assertion, Support
+from icarus_lite.language.syntax import Domain
+from icarus_lite.symbols import Belief, Outcome, Percept, Status, is_number
+
+
+@dataclass(frozen=True, slots=True)
+class BeliefState:
+    """What is believed in one cycle.
+
+    Args:
+        cycle: Its number, from 0.
+        percepts: The percepts, as they came.
+        supports: Each belief (percepts left out) with all its supports, never empty.
+        hierarchy: The attachment hierarchy behind the `attached` beliefs.
+        notes: What the person should know, such as an attachment refused as circular.
+    """
+
+    cycle: int = -1
+    percepts: tuple[Percept, ...] = ()
+    supports: Mapping[Belief, tuple[Support, ...]] = field(default_factory=dict)
+    hierarchy: Hierarchy = field(default_factory=Hierarchy)
+    notes: tuple[str, ...] = ()
+
+    def __contains__(self, belief: Belief) -> bool:
+        return belief in self.supports
+
+    @property
+    def beliefs(self) -> tuple[Belief, ...]:
+        """All beliefs, percepts left out, sorted as they are written."""
+        return tuple(sorted(self.supports, key=str))
+
+    def facts(self) -> FactStore:
+        """Give percepts and beliefs together, to match patterns against."""
+        store = FactStore(percept_fact(percept) for percept in self.percepts)
+        for belief in self.supports:
+            store.add(belief)
+        return store
+
+
+@dataclass(frozen=True, slots=True)
+class Memory:
+    """What the engine carries from one cycle to the next.
+
+    Args:
+        state: The beliefs of the last cycle.
+        asserted: Persisting effects, each with the action and cycle that asserted it.
+        known: Names of all objects ever perceived; one of them that is gone takes its facts along.
+    """
+
+    state: BeliefState = field(default_factory=BeliefState)
+    asserted: Mapping[Belief, Assertion] = field(default_factory=dict)
+    known: frozenset[str] = frozenset()
+
+
+class InferenceEngine:
+    """Derives the beliefs of each cycle from percepts and the last actions.
+
+    An effect of an action that succeeded is asserted and persists until an effect removes it or
+    an object in it is no longer perceived, unless concepts define its predicate: then perception
+    decides, each cycle, whether it holds. `attached` follows Algorithm 1. An action that failed
+    or still runs asserts nothing.
+
+    The engine itself holds no state: `step` takes a memory and gives the next one.
+
+    Args:
+        domain: A checked domain.
+        functions: Python predicates that `:tests` may call by name. They must be pure.
+    """
+
+    __slots__ = ("closure", "domain", "evaluator")
+
+    def __init__(self, domain: Domain, functions: Functions | None = None) -> None:
+        self.domain = domain
+        self.evaluator = Evaluator(functions or {}, domain.source.path)
+        self.closure = Closure(domain.concepts, self.evaluator)
+
+    def step(
+        self,
+        memory: Memory,
+        percepts: Iterable[Percept],
+        outcomes: Sequence[Outcome] = (),
+        changes: Mapping[int, Change] | None = None,
+    ) -> Memory:
+        """Infer the beliefs of the next cycle.
+
+        Args:
+            memory: What was carried over from the last cycle; `Memory()` at the start.
+            percepts: Everything perceived now (anchored objects, seen or hidden).
+            outcomes: The actions that ended (or still run) since the last cycle, in order.
+            changes: For outcome number i, its exact effects where they are known (the agent
+                planned them); otherwise they are worked out from the skill's clauses.
+
+        Raises:
+            FrameError: two percepts of one type share a name, or an attribute is not finite.
+            InferenceError: a test of the domain cannot be evaluated.
+        """
+        seen = _checked(percepts)
+        cycle = memory.state.cycle + 1
+        present = frozenset(percept.name for percept in seen)
+        known = memory.known | present
+        asserted, hierarchy = dict(memory.asserted), memory.state.hierarchy
+        notes: list[str] = []
+        before = memory.state.facts()
+        for number, outcome in enumerate(outcomes):
+            if outcome.status is not Status.SUCCEEDED:
+                continue
+            change = (changes or {}).get(number)
+            if change is None:
+                change = change_by_action(
+                    self.domain.skills, outcome.action, before, self.evaluator
+                )
+            cause = Assertion(outcome.action, cycle)
+            asserted = self._assert(asserted, change, cause)
+            hierarchy, refused = hierarchy.with_change(change, outcome.action, cycle)
+            notes.extend(refused)
+            hierarchy, refused = advance(hierarchy, self.domain.attachments, outcome.action, cycle)
+            notes.extend(refused)
+        gone = known - present
+        asserted = {b: a for b, a in asserted.items() if gone.isdisjoint(b.args)}
+        hierarchy = hierarchy.without(p for p in hierarchy.pairs() if not gone.isdisjoint(p))
+        state = self._infer(cycle, seen, asserted, hierarchy, tuple(notes))
+        return Memory(state, asserted, known)
+
+    def _assert(
+        self, asserted: Mapping[Belief, Assertion], change: Change, cause: Assertion
+    ) -> dict[Belief, Assertion]:
+        kept = {b: a for b, a in asserted.items() if not change.removes(b)}
+        for belief in change.added:
+            if belief.predicate != ATTACHED and belief.predicate not in self.closure.concepts:
+                kept[belief] = cause
+        return kept
+
+    def _infer(
+        self,
+        cycle: int,
+        percepts: tuple[Percept, ...],
+        asserted: Mapping[Belief, Assertion],
+        hierarchy: Hierarchy,
+        notes: tuple[str, ...],
+    ) -> BeliefState:
+        given: dict[Belief, tuple[Support, ...]] = {b: (cause,) for b, cause in asserted.items()}
+        for belief, link in hierarchy.beliefs():
+            given[belief] = (Assertion(link.action, link.cycle),)
+        facts = FactStore(percept_fact(percept) for percept in percepts)
+        for belief in given:
+            facts.add(belief)
+        for belief, supports in self.closure.derive(facts).items():
+            given[belief] = given.get(belief, ()) + supports
+        return BeliefState(cycle, percepts, given, hierarchy, notes)
+
+
+def _checked(percepts: Iterable[Percept]) -> tuple[Percept, ...]:
+    seen = tuple(percepts)
+    counts = Counter((percept.type, percept.name) for percept in seen)
+    for (kind, name), count in counts.items():
+        if count > 1:
+            raise FrameError(f"{count} percepts of type {kind} are named {name}; names are unique")
+    for percept in seen:
+        for attribute, value in percept.attributes.items():
+            if not isinstance(value, str) and not is_number(value):
+                raise FrameError(
+                    f"attribute {attribute} of {percept.name} is {value!r}, not finite"
+                )
+    return seen

@@ -1,0 +1,19 @@
+"""Planning: from beliefs and goals to the next skill."""
+
+from icarus_lite.planning.relevance import Relevance, can_change, relevance
+from icarus_lite.planning.search import DEFAULT_LIMIT, NoPlan, Plan, find_plan
+from icarus_lite.planning.situation import Imagination, PlanStep, Situation, holds
+
+__all__ = [
+    "DEFAULT_LIMIT",
+    "Imagination",
+    "NoPlan",
+    "Plan",
+    "PlanStep",
+    "Relevance",
+    "Situation",
+    "can_change",
+    "find_plan",
+    "holds",
+    "relevance",
+]

@@ -1,0 +1,70 @@
+"""Means-ends analysis on the text of a domain: which skills can serve a goal at all.
+
+Skill chaining goes from a literal to the skills with such an effect and on to their conditions;
+concept chaining goes from a concept to the literals of its definition. Both look at predicate and
+sign only, so what they leave out can never help.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from icarus_lite.inference import ATTACHED
+from icarus_lite.language.syntax import Condition, Domain, SkillClause
+
+Sign: TypeAlias = tuple[str, bool]
+"""A predicate, and whether it is to become true or false."""
+
+
+@dataclass(frozen=True, slots=True)
+class Relevance:
+    """What can serve a goal.
+
+    Args:
+        skills: The primitive skills that can serve it, in the order of the domain.
+        signs: The literals they serve, directly or through others.
+    """
+
+    skills: tuple[SkillClause, ...]
+    signs: frozenset[Sign]
+
+
+def relevance(domain: Domain, goals: Iterable[Condition]) -> Relevance:
+    """Chain backwards from goals to the primitive skills that can serve them."""
+    primitives = [clause for clause in domain.skills if clause.actions]
+    effects = {id(clause): frozenset(signs_of_effects(domain, clause)) for clause in primitives}
+    signs = {(goal.atom.predicate, not goal.negated) for goal in goals}
+    chosen: set[int] = set()
+    before = -1
+    while before != len(signs) + len(chosen):
+        before = len(signs) + len(chosen)
+        for clause in domain.concepts:
+            for wanted in (True, False):
+                if (clause.head.predicate, wanted) in signs:
+                    signs.update(
+                        (c.atom.predicate, c.negated is not wanted) for c in clause.elements
+                    )
+        for clause in primitives:
+            if id(clause) not in chosen and effects[id(clause)] & signs:
+                chosen.add(id(clause))
+                signs.update((c.atom.predicate, not c.negated) for c in clause.elements)
+    return Relevance(tuple(c for c in primitives if id(c) in chosen), frozenset(signs))
+
+
+def signs_of_effects(domain: Domain, clause: SkillClause) -> Iterator[Sign]:
+    """Give what a skill can change: its effects, and the attachments it makes or dissolves."""
+    for effect in clause.effects:
+        yield effect.atom.predicate, not effect.negated
+    for rule in domain.attachments:
+        if rule.attach.predicate == clause.head.predicate:
+            yield ATTACHED, True
+            yield ATTACHED, False  # the new parent replaces the old one
+        if rule.until is not None and rule.until.predicate == clause.head.predicate:
+            yield ATTACHED, False
+
+
+def can_change(domain: Domain, goal: Condition) -> bool:
+    """Tell whether any skill can ever change a literal, directly or through its definition."""
+    return bool(relevance(domain, [goal]).skills)

@@ -1,0 +1,18 @@
+"""What happened, recorded and read back."""
+
+from icarus_lite.trace.frames import Frame, beliefs_line, outcome_from_json, read_frames
+from icarus_lite.trace.reader import Trace, inputs_of, read_trace
+from icarus_lite.trace.record import TraceWriter, cycle_record, header
+
+__all__ = [
+    "Frame",
+    "Trace",
+    "TraceWriter",
+    "beliefs_line",
+    "cycle_record",
+    "header",
+    "inputs_of",
+    "outcome_from_json",
+    "read_frames",
+    "read_trace",
+]

@@ -1,0 +1,144 @@
+"""The trace: one JSON line a cycle, appended and flushed, so that a crash loses nothing."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+from icarus_lite._version import __version__
+from icarus_lite.agent import Decision
+from icarus_lite.errors import TraceError
+from icarus_lite.inference import Assertion, Support
+from icarus_lite.language.syntax import Domain
+from icarus_lite.symbols import Outcome, Percept
+
+FORMAT = "icarus-trace"
+VERSION = 1
+
+
+def header(domain: Domain, goals: Sequence[object], **extra: object) -> dict[str, object]:
+    """Give the first line of a trace: what ran, on which text, with which settings.
+
+    Args:
+        domain: The domain; its text goes in whole, so that the trace explains itself.
+        goals: The goals of the agent.
+        extra: Whatever the caller wants recorded: task, robot, seed, configuration.
+    """
+    text = domain.source.text
+    return {
+        "format": FORMAT,
+        "version": VERSION,
+        "icarus": __version__,
+        "domain": {
+            "name": domain.name,
+            "path": domain.source.path,
+            "sha256": hashlib.sha256(text.encode()).hexdigest(),
+            "text": text,
+        },
+        "goals": [str(goal) for goal in goals],
+        **extra,
+    }
+
+
+def cycle_record(
+    decision: Decision, percepts: Sequence[Percept], outcomes: Sequence[Outcome], **extra: object
+) -> dict[str, object]:
+    """Give one cycle as a line of the trace.
+
+    Everything but `extra` (anchors, arm, timings) follows from the domain, the percepts and the
+    outcomes, so that a replay gives the same bytes.
+    """
+    return {
+        "cycle": decision.cycle,
+        "outcomes": [_outcome(outcome) for outcome in outcomes],
+        "percepts": [
+            {"type": p.type, "name": p.name, "attributes": dict(p.attributes)} for p in percepts
+        ],
+        "added": [
+            {"belief": str(b), "supports": [_support(s) for s in decision.state.supports[b]]}
+            for b in decision.added
+        ],
+        "removed": [str(belief) for belief in decision.removed],
+        "goals": [{"goal": str(g.goal), "satisfied": g.satisfied} for g in decision.goals],
+        "path": [str(step.action) for step in decision.path],
+        "decision": {
+            "kind": str(decision.kind),
+            "action": None if decision.step is None else str(decision.step.action),
+            "commands": [str(command) for command in decision.commands],
+            "reason": decision.reason,
+        },
+        "notes": list(decision.state.notes),
+        **extra,
+    }
+
+
+def _outcome(outcome: Outcome) -> dict[str, object]:
+    row: dict[str, object] = {
+        "name": outcome.action.name,
+        "args": list(outcome.action.args),
+        "status": str(outcome.status),
+    }
+    return {**row, "reason": outcome.reason} if outcome.reason else row
+
+
+def _support(support: Support) -> dict[str, object]:
+    if isinstance(support, Assertion):
+        return {"action": str(support.action), "cycle": support.cycle}
+    return {
+        "concept": str(support.clause.head),
+        "line": support.clause.span.line,
+        "because": [str(fact) for fact in support.matched],
+        "absent": [str(atom) for atom in support.absent],
+    }
+
+
+class TraceWriter:
+    """Appends lines to a trace file; each is flushed before the next cycle begins.
+
+    Args:
+        path: The file; one that exists is replaced, its folder is made if it is missing.
+        first: The header.
+
+    Raises:
+        TraceError: the file cannot be written.
+    """
+
+    def __init__(self, path: str | Path, first: Mapping[str, object]) -> None:
+        self.path = Path(path)
+        try:
+            self.path.parent.mkdir(parents=True, exist_ok=True)
+            self._file = self.path.open("w", encoding="utf-8")
+        except OSError as error:
+            raise TraceError(f"cannot be written: {error.strerror}", path=str(path)) from error
+        self.write(first)
+
+    def write(self, record: Mapping[str, object]) -> None:
+        """Append one line and flush it to the operating system.
+
+        Raises:
+            TraceError: the disk refuses.
+        """
+        try:
+            self._file.write(json.dumps(record, ensure_ascii=False, allow_nan=False) + "\n")
+            self._file.flush()
+        except OSError as error:
+            raise TraceError(f"cannot be written: {error.strerror}", path=str(self.path)) from error
+
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        value: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self.close()
