@@ -1,0 +1,132 @@
+"""The cell in MuJoCo: geometry only.
+
+Joint angles and part poses come in, `mj_kinematics` puts every solid in its place, and rays or a
+renderer look at it. There are no dynamics: the cell is quasi-static, and what the hand does to the
+parts is decided in `runtime.cell.world`.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import os
+import sys
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runtime.cell.layout import Layout
+from runtime.cell.mjcf import GROUPS, cell_xml
+from runtime.cell.world import PlacedPart
+from runtime.errors import UsageError
+from runtime.kinematics import ArmModel, Matrix
+
+
+class Scene:
+    """The solids of the cell and where they are.
+
+    Args:
+        model: The arm.
+        layout: The parts and the fixture.
+        tcp: (4, 4), flange to tool centre point.
+        mount: (4, 4), flange to camera.
+        view_rad: The camera's vertical field of view.
+
+    Raises:
+        UsageError: MuJoCo is not installed.
+    """
+
+    def __init__(
+        self, model: ArmModel, layout: Layout, tcp: Matrix, mount: Matrix, view_rad: float
+    ) -> None:
+        mujoco = load_mujoco()
+        self.names = tuple(part.name for part in layout.parts)
+        xml = cell_xml(
+            model,
+            layout.parts,
+            layout.fixture,
+            tcp_m=float(tcp[2, 3]),
+            mount=mount,
+            view_rad=view_rad,
+        )
+        self.model: Any = mujoco.MjModel.from_xml_string(xml)
+        self.data: Any = mujoco.MjData(self.model)
+        self._kinematics = mujoco.mj_kinematics
+        self._camlight = mujoco.mj_camlight
+        self._rays = mujoco.mj_multiRay
+        self._quaternion = mujoco.mju_mat2Quat
+        bodies = [self.model.body(name).id for name in self.names]
+        self._mocap = [int(self.model.body_mocapid[body]) for body in bodies]
+        owner = np.full(self.model.nbody, -1, dtype=np.int32)
+        owner[bodies] = np.arange(len(bodies))
+        self._owner = np.append(owner[self.model.geom_bodyid], -1)  # the last one: nothing hit
+        self._seen = np.zeros(6, dtype=np.uint8)
+        self._seen[[GROUPS["arm"], GROUPS["hand"], GROUPS["part"]]] = 1
+
+    def move(self, joints: Sequence[float], opening_m: float, parts: Iterable[PlacedPart]) -> None:
+        """Put arm (rad), fingers (m apart) and parts, in the layout's order, in their places."""
+        self.data.qpos[:6] = joints
+        self.data.qpos[6:8] = opening_m / 2
+        quaternion = np.empty(4)
+        for slot, part in zip(self._mocap, parts, strict=True):
+            self.data.mocap_pos[slot] = part.pose[:3, 3]
+            self._quaternion(quaternion, part.pose[:3, :3].ravel())
+            self.data.mocap_quat[slot] = quaternion
+        self._kinematics(self.model, self.data)
+        self._camlight(self.model, self.data)
+
+    def cast(
+        self, origin: Sequence[float], directions: NDArray[np.float64]
+    ) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
+        """Follow rays from a point through arm, hand and parts.
+
+        Args:
+            origin: m, in the base frame.
+            directions: (n, 3) unit vectors in the base frame.
+
+        Returns:
+            (n,) index of the part hit, -1 for anything else; (n,) distance, m, -1 for nothing hit.
+        """
+        count = len(directions)
+        geoms = np.full(count, -1, dtype=np.int32)
+        distances = np.full(count, -1.0)
+        self._rays(
+            self.model,
+            self.data,
+            np.asarray(origin, dtype=np.float64),
+            np.ascontiguousarray(directions).ravel(),
+            self._seen,
+            True,  # noqa: FBT003 - MuJoCo takes flags by position
+            -1,
+            geoms,
+            distances,
+            None,
+            count,
+            10.0,
+        )
+        return self._owner[geoms], distances
+
+
+def load_mujoco() -> Any:
+    """Import MuJoCo, or say how to get it. Raises UsageError."""
+    if (
+        "mujoco" not in sys.modules
+        and "MUJOCO_GL" not in os.environ
+        and "DISPLAY" not in os.environ
+    ):
+        # Read once, when MuJoCo is imported; its own default needs a display.
+        for library, name in (("libEGL.so.1", "egl"), ("libOSMesa.so.8", "osmesa")):
+            with contextlib.suppress(OSError):
+                ctypes.CDLL(library)
+                os.environ["MUJOCO_GL"] = name
+                break
+    try:
+        import mujoco  # noqa: PLC0415 - an optional extra
+    except ImportError as error:
+        raise UsageError(
+            "The simulated cell needs MuJoCo, which is not installed:"
+            " pip install 'icarus-lite[cell]'."
+        ) from error
+    return mujoco
