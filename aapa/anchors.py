@@ -31,7 +31,7 @@ class Anchor:
     """The maintained state of one object.
 
     Args:
-        name: Its symbol, unique and never reused.
+        name: Its symbol, unique; never reused but for the one object of a unique type.
         type: The detector's class.
         box: Last known (or carried) box, px.
         status: Why it is believed to be there.

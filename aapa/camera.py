@@ -32,9 +32,10 @@ class Camera:
 
     def project(self, point: Position) -> tuple[float, float, float]:
         """Give u, v (px) and depth (m, along the optical axis; negative behind) of a point."""
-        x, y, z = self.rotation.T @ (np.asarray(point) - np.asarray(self.position))
+        # As Python floats, since a point in the optical centre itself is no reason to warn.
+        x, y, z = (self.rotation.T @ (np.asarray(point) - np.asarray(self.position))).tolist()
         scale = self.focal_px / z if abs(z) > 1e-9 else float("inf")
-        return float(self.width / 2 + x * scale), float(self.height / 2 + y * scale), float(z)
+        return self.width / 2 + x * scale, self.height / 2 + y * scale, z
 
     def back_project(self, u: float, v: float, depth: float) -> Position:
         """Give the point of the base frame seen at u, v (px) at a depth (m)."""

@@ -1,0 +1,54 @@
+"""Plane geometry of boxes, in px, x1 y1 x2 y2 with the origin at the top left."""
+
+from __future__ import annotations
+
+from aapa.detections import Box
+
+
+def centre_of(box: Box) -> tuple[float, float]:
+    """Give the centre of a box, px."""
+    return (box[0] + box[2]) / 2, (box[1] + box[3]) / 2
+
+
+def moved(box: Box, dx: float, dy: float) -> Box:
+    """Give a box shifted by dx, dy (px); its size stays."""
+    return box[0] + dx, box[1] + dy, box[2] + dx, box[3] + dy
+
+
+def centred(u: float, v: float, width: float, height: float) -> Box:
+    """Give the box of a width and height around a centre, all px."""
+    return u - width / 2, v - height / 2, u + width / 2, v + height / 2
+
+
+def overlap(first: Box, second: Box, margin_px: float) -> bool:
+    """Tell whether two boxes share area, or come closer than a margin (px) to it.
+
+    A box without area hides nothing and overlaps nothing.
+    """
+    return (
+        first[0] < second[2] + margin_px
+        and second[0] < first[2] + margin_px
+        and first[1] < second[3] + margin_px
+        and second[1] < first[3] + margin_px
+        and has_area(first)
+        and has_area(second)
+    )
+
+
+def has_area(box: Box) -> bool:
+    """Tell whether a box covers anything at all."""
+    return box[2] > box[0] and box[3] > box[1]
+
+
+def reaches_out(box: Box, image_size: tuple[int, int], margin_px: float) -> bool:
+    """Tell whether part of a box lies outside the image, or within a margin (px) of its border.
+
+    Detectors clip boxes to the image, so that what leaves it was last seen touching the border.
+    """
+    width, height = image_size
+    return (
+        box[0] < margin_px
+        or box[1] < margin_px
+        or box[2] > width - margin_px
+        or box[3] > height - margin_px
+    )

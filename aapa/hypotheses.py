@@ -1,0 +1,212 @@
+"""The reasoning about lost anchors: why was this object not detected, and where is it now?
+
+Each lost anchor gets the first hypothesis that holds:
+
+a. its confidence is below the least for reasoning: it only fades;
+b. it is attached to a parent that is still anchored, seen or not: it moves with that parent;
+c. it is out of view: it is kept where it is;
+d. it is occluded: something seen, or itself explained, stands in front: it is kept too;
+e. nothing explains the miss: its confidence falls, and below 0 it is removed.
+
+An action done on an object shows that it exists, so that one named in the attachments never
+falls under a. And an object may only hide another if its own presence is explained without that
+other: two vanished things do not keep each other alive.
+
+Source: Liang et al. 2021, section III-B 1 (hypothesis reasoning with attachment hierarchy).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+from aapa.anchors import Anchor, AnchorStatus
+from aapa.boxes import centre_of, moved
+from aapa.detections import Box, Position
+from aapa.view import View
+
+
+class Move(NamedTuple):
+    """How far an anchor went since the last frame: dx, dy in px, and offset in m if known."""
+
+    dx: float = 0.0
+    dy: float = 0.0
+    offset: Position | None = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Explanation:
+    """What became of the lost anchors.
+
+    Args:
+        kept: Those still maintained, with status, place and reason of this frame.
+        dropped: Those given up, with the reason.
+    """
+
+    kept: tuple[Anchor, ...]
+    dropped: tuple[Anchor, ...]
+
+
+def move_between(old: Anchor, new: Anchor) -> Move:
+    """Give the way from an anchor's last place to its new one."""
+    (u, v), (new_u, new_v) = centre_of(old.box), centre_of(new.box)
+    offset = None
+    if old.position is not None and new.position is not None:
+        (x, y, z), (new_x, new_y, new_z) = old.position, new.position
+        offset = (new_x - x, new_y - y, new_z - z)
+    return Move(new_u - u, new_v - v, offset)
+
+
+def explain(
+    lost: Iterable[Anchor],
+    seen: Sequence[Anchor],
+    moves: Mapping[str, Move],
+    parents: Mapping[str, str],
+    view: View,
+) -> Explanation:
+    """Find the hypothesis for each lost anchor, and what follows from it.
+
+    Args:
+        lost: The anchors of the last frame that no detection was aligned with.
+        seen: The anchors that have a detection in this frame, sorted by name.
+        moves: How far the seen parents went; one left out has not moved.
+        parents: The attachment hierarchy, child to parent, without circles.
+        view: The image of this frame.
+    """
+    placed = _in_this_frame(lost, moves, parents, view)
+    grounds = _grounds(placed, seen, parents, view)
+    maintained = {anchor.name: anchor for anchor in seen}
+    kept: list[Anchor] = []
+    dropped: list[Anchor] = []
+    for anchor in _parents_first(placed, parents):
+        parent = maintained.get(parents.get(anchor.name, ""))
+        result = _concluded(anchor, parent, grounds.get(anchor.name), view)
+        if result.confidence < 0:
+            dropped.append(replace(result, confidence=0.0))
+        else:
+            kept.append(result)
+            maintained[result.name] = result
+    return Explanation(tuple(kept), tuple(dropped))
+
+
+class _Ground(NamedTuple):
+    """A hypothesis that keeps an anchor, and the sentence for it."""
+
+    status: AnchorStatus
+    reason: str
+
+
+def _in_this_frame(
+    lost: Iterable[Anchor], moves: Mapping[str, Move], parents: Mapping[str, str], view: View
+) -> dict[str, Anchor]:
+    """Give the lost anchors, by name in order, carried along and seen from where the camera is."""
+    by_name = {anchor.name: anchor for anchor in sorted(lost, key=lambda anchor: anchor.name)}
+    involved = {*parents, *parents.values()}
+    placed: dict[str, Anchor] = {}
+    for name, anchor in by_name.items():
+        carrier = name
+        while carrier in by_name:
+            carrier = parents.get(carrier, "")
+        box, position = _carried(anchor, moves.get(carrier, Move()))
+        confidence = anchor.confidence
+        if name in involved:
+            confidence = max(confidence, view.parameters.min_anchor_confidence)
+        placed[name] = replace(
+            anchor,
+            box=view.box_of(box, position, anchor.size),
+            position=position,
+            confidence=confidence,
+        )
+    return placed
+
+
+def _carried(anchor: Anchor, move: Move) -> tuple[Box, Position | None]:
+    box = moved(anchor.box, move.dx, move.dy)
+    if anchor.position is None or move.offset is None:
+        return box, None
+    (x, y, z), (dx, dy, dz) = anchor.position, move.offset
+    return box, (x + dx, y + dy, z + dz)
+
+
+def _grounds(
+    placed: Mapping[str, Anchor],
+    seen: Sequence[Anchor],
+    parents: Mapping[str, str],
+    view: View,
+) -> dict[str, _Ground]:
+    """Find the lost anchors whose presence follows, step by step, from what is seen."""
+    least = view.parameters.min_anchor_confidence
+    pending = [anchor for anchor in placed.values() if anchor.confidence >= least]
+    outside = {anchor.name: view.why_out_of_view(anchor.box, anchor.position) for anchor in pending}
+    standing = {anchor.name for anchor in seen}
+    grounds: dict[str, _Ground] = {}
+    front = list(seen)
+    while pending and (front or not grounds):
+        found: dict[str, _Ground] = {}
+        for anchor in pending:
+            reason = outside[anchor.name]
+            if parents.get(anchor.name) in standing:
+                found[anchor.name] = _Ground(AnchorStatus.ATTACHED, "")
+            elif reason is not None:
+                found[anchor.name] = _Ground(AnchorStatus.OUT_OF_VIEW, reason)
+            elif (occluder := _first_hiding(anchor, front, view)) is not None:
+                found[anchor.name] = _Ground(
+                    AnchorStatus.OCCLUDED, f"{occluder} stands in front of it."
+                )
+        if not found:
+            break
+        # The next round asks only about what this one has added: the rest has been asked.
+        front = [placed[name] for name in found]
+        standing.update(found)
+        grounds.update(found)
+        pending = [anchor for anchor in pending if anchor.name not in found]
+    return grounds
+
+
+def _first_hiding(anchor: Anchor, front: Sequence[Anchor], view: View) -> str | None:
+    behind = (anchor.box, anchor.position)
+    return next(
+        (other.name for other in front if view.hides((other.box, other.position), behind)), None
+    )
+
+
+def _parents_first(placed: Mapping[str, Anchor], parents: Mapping[str, str]) -> list[Anchor]:
+    depths: dict[str, int] = {}
+    for name in placed:
+        depths[name] = 0
+        above = parents.get(name, "")
+        while above in placed:
+            depths[name] += 1
+            above = parents.get(above, "")
+    return sorted(placed.values(), key=lambda anchor: depths[anchor.name])
+
+
+def _concluded(anchor: Anchor, parent: Anchor | None, ground: _Ground | None, view: View) -> Anchor:
+    """Give the anchor as it is believed to be; a confidence below 0 says that it is given up."""
+    parameters = view.parameters
+    if anchor.confidence < parameters.min_anchor_confidence:
+        return _faded(anchor, "it had been seen too little to be reasoned about", view)
+    if parent is not None:
+        return replace(
+            anchor,
+            status=AnchorStatus.ATTACHED,
+            parent=parent.name,
+            reason=f"It is attached to {parent.name} ({parent.status}) and moves with it.",
+        )
+    if ground is not None:
+        return replace(anchor, status=ground.status, parent=None, reason=ground.reason)
+    return _faded(anchor, "nothing explains why", view)
+
+
+def _faded(anchor: Anchor, why: str, view: View) -> Anchor:
+    # Rounded, so that ten losses of 0.1 are 1 and the last cycle does not depend on float dust.
+    confidence = round(anchor.confidence - view.parameters.confidence_loss, 9)
+    outcome = f"its confidence falls to {confidence:.3g}" if confidence >= 0 else "it is given up"
+    return replace(
+        anchor,
+        status=AnchorStatus.MISSING,
+        parent=None,
+        confidence=confidence,
+        reason=f"It is not seen and {why}; {outcome}.",
+    )
