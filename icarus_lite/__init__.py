@@ -3,7 +3,7 @@
 from icarus_lite._version import __version__
 from icarus_lite.agent import Agent, Decision, DecisionKind, GoalStatus
 from icarus_lite.errors import FrameError, IcarusError, InferenceError, TraceError
-from icarus_lite.language.diagnostics import DomainError
+from icarus_lite.language import DomainError, load_domain
 from icarus_lite.symbols import Action, Belief, Outcome, Percept, Status, Value
 
 __all__ = [
@@ -23,4 +23,5 @@ __all__ = [
     "TraceError",
     "Value",
     "__version__",
+    "load_domain",
 ]

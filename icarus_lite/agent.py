@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
@@ -124,7 +123,7 @@ class Agent:
         self._memory = Memory()
         self._path: tuple[PlanStep, ...] = ()
         self._running: PlanStep | None = None
-        self._failures: Counter[Action] = Counter()
+        self._failures: dict[Action, list[str]] = {}
 
     @property
     def state(self) -> BeliefState:
@@ -191,7 +190,7 @@ class Agent:
                 continue
             self._running = None
             if outcome.status is Status.FAILED:
-                self._failures[outcome.action] += 1
+                self._failures.setdefault(outcome.action, []).append(outcome.reason)
                 self._path = ()
             else:
                 self._path = self._path[1:]
@@ -213,11 +212,14 @@ class Agent:
             again = imagination.instances(self._path[0].clause, facts, dict(self._path[0].bindings))
             if any(True for _ in again):
                 return DecisionKind.ACT, f"next step of the plan, {len(self._path)} to go"
-        excluded = [action for action, n in self._failures.items() if n >= MAX_ATTEMPTS]
+        excluded = [a for a, reasons in self._failures.items() if len(reasons) >= MAX_ATTEMPTS]
         found = find_plan(self.domain, imagination, self.goals, excluded=excluded)
         if isinstance(found, NoPlan):
             self._path = ()
-            return DecisionKind.IMPASSE, found.reason
+            given_up = [
+                f"{a} failed {MAX_ATTEMPTS} times: {self._failures[a][-1]}" for a in excluded
+            ]
+            return DecisionKind.IMPASSE, "; ".join([found.reason, *given_up])
         self._path = found.steps
         failed = [o.reason for o in outcomes if o.status is Status.FAILED and o.reason]
         after = f" after a failure ({failed[-1]})" if failed else ""

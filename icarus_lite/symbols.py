@@ -65,7 +65,7 @@ class Percept:
     def __hash__(self) -> int:
         return hash((self.type, self.name))
 
-    def __reduce__(self) -> tuple[type[Percept], tuple[str, str, dict[str, Value]]]:
+    def __reduce__(self) -> tuple[object, ...]:
         return Percept, (self.type, self.name, dict(self.attributes))
 
 

@@ -40,11 +40,11 @@ def relevance(domain: Domain, goals: Iterable[Condition]) -> Relevance:
     before = -1
     while before != len(signs) + len(chosen):
         before = len(signs) + len(chosen)
-        for clause in domain.concepts:
+        for concept in domain.concepts:
             for wanted in (True, False):
-                if (clause.head.predicate, wanted) in signs:
+                if (concept.head.predicate, wanted) in signs:
                     signs.update(
-                        (c.atom.predicate, c.negated is not wanted) for c in clause.elements
+                        (c.atom.predicate, c.negated is not wanted) for c in concept.elements
                     )
         for clause in primitives:
             if id(clause) not in chosen and effects[id(clause)] & signs:

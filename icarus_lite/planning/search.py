@@ -6,7 +6,8 @@ from collections import deque
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
-from icarus_lite.language.syntax import Condition, Domain
+from icarus_lite.inference import FactStore
+from icarus_lite.language.syntax import Condition, Constant, Domain
 from icarus_lite.planning.relevance import can_change, relevance
 from icarus_lite.planning.situation import Imagination, PlanStep, Situation
 from icarus_lite.symbols import Action
@@ -59,8 +60,9 @@ def find_plan(
     if imagination.holds(goals, facts):
         return Plan(())
     for goal in goals:
-        if not imagination.holds([goal], facts) and not can_change(domain, goal):
-            return NoPlan(f"no skill can ever make {goal} true", final=True)
+        hopeless = _hopeless(domain, imagination, goal, facts)
+        if hopeless:
+            return NoPlan(hopeless, final=True)
     clauses = relevance(domain, goals).skills
     frontier: deque[tuple[Situation, tuple[PlanStep, ...]]] = deque([(imagination.start, ())])
     visited = {imagination.start.key}
@@ -84,6 +86,25 @@ def find_plan(
     return NoPlan(_dead_end(domain, imagination, goals, excluded), final=True)
 
 
+def _hopeless(domain: Domain, imagination: Imagination, goal: Condition, facts: FactStore) -> str:
+    """Say why a goal cannot be reached whatever is tried; empty if nothing speaks against it."""
+    unknown = _unknown(goal, facts)
+    if unknown:
+        return f"{goal} speaks of {unknown}, which is not perceived"
+    if not imagination.holds([goal], facts) and not can_change(domain, goal):
+        return f"no skill can ever make {goal} true"
+    return ""
+
+
+def _unknown(goal: Condition, facts: FactStore) -> str:
+    """Name the first constant of a goal that no fact speaks of; empty if all are known."""
+    known = {value for fact in facts for value in fact.args}
+    for term in goal.atom.args:
+        if isinstance(term, Constant) and not goal.negated and term.value not in known:
+            return str(term)
+    return ""
+
+
 def _dead_end(
     domain: Domain,
     imagination: Imagination,
@@ -97,7 +118,4 @@ def _dead_end(
     if names:
         shown = ", ".join(names[:3]) + (", …" if len(names) > 3 else "")
         return f"no sequence of skills reaches {wanted}, though {shown} could start now"
-    if excluded:
-        failed = ", ".join(sorted(map(str, excluded)))
-        return f"no skill that serves {wanted} can start, with {failed} failed too often"
     return f"no skill that serves {wanted} can start now"

@@ -66,4 +66,7 @@ def _some(atom: Atom, bound: dict, constants: list, true: set[tuple]) -> bool:
 
 
 def _ground(atom: Atom, bound: dict) -> tuple:
-    return (atom.predicate, *(t.value if isinstance(t, Constant) else bound[t.name] for t in atom.args))
+    return (
+        atom.predicate,
+        *(t.value if isinstance(t, Constant) else bound[t.name] for t in atom.args),
+    )

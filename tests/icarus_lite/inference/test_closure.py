@@ -66,17 +66,17 @@ def test_two_variables_may_be_the_same_object_unless_a_test_says_otherwise() -> 
 
 
 def test_a_repeated_variable_in_one_literal_must_be_equal() -> None:
-    assert derive("((loop ?x) :elements ((edge ?x ?x)))", fact("edge", 1, 2), fact("edge", 3, 3)) == {
-        "(loop 3)"
-    }
+    assert derive(
+        "((loop ?x) :elements ((edge ?x ?x)))", fact("edge", 1, 2), fact("edge", 3, 3)
+    ) == {"(loop 3)"}
 
 
 def test_attributes_match_by_name_in_any_order_and_a_missing_one_does_not() -> None:
     text = "((sized ?o) :elements ((object ?o ^w ?w ^type box)) :tests ((> ?w 1)))"
     big = fact("object", "a", type="box", w=2, x=0)
-    assert derive(text, big, fact("object", "b", type="box"), fact("object", "c", type="rod", w=5)) == {
-        "(sized a)"
-    }
+    assert derive(
+        text, big, fact("object", "b", type="box"), fact("object", "c", type="rod", w=5)
+    ) == {"(sized a)"}
 
 
 def test_binds_compute_the_attributes_of_a_head() -> None:

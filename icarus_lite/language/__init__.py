@@ -1,0 +1,39 @@
+"""The language of ICARUS domains: text into a checked syntax tree."""
+
+from icarus_lite.language.checker import check_domain
+from icarus_lite.language.diagnostics import (
+    CODES,
+    Diagnostic,
+    DomainError,
+    Severity,
+    has_errors,
+    render,
+    to_json,
+)
+from icarus_lite.language.files import diagnose_file, load_domain
+from icarus_lite.language.fragments import parse_atom, parse_conditions
+from icarus_lite.language.functions import FUNCTIONS, Function, evaluate, function_table
+from icarus_lite.language.reader import parse_domain
+from icarus_lite.language.stratification import NotStratifiedError, strata
+
+__all__ = [
+    "CODES",
+    "FUNCTIONS",
+    "Diagnostic",
+    "DomainError",
+    "Function",
+    "NotStratifiedError",
+    "Severity",
+    "check_domain",
+    "diagnose_file",
+    "evaluate",
+    "function_table",
+    "has_errors",
+    "load_domain",
+    "parse_atom",
+    "parse_conditions",
+    "parse_domain",
+    "render",
+    "strata",
+    "to_json",
+]

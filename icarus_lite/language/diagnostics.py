@@ -1,0 +1,210 @@
+"""What is wrong with a domain file, where, and what to do about it.
+
+A `Diagnostic` is plain data; the command line, the REPL and the Python exception show the same one.
+"""
+
+from __future__ import annotations
+
+import unicodedata
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from types import MappingProxyType
+
+from icarus_lite.errors import IcarusError
+from icarus_lite.language.syntax import Source, Span
+
+CODES: Mapping[str, str] = MappingProxyType(
+    {
+        "ICR001": "The file cannot be read as UTF-8 text.",
+        "ICR002": 'A "(" is never closed.',
+        "ICR003": 'A ")" closes nothing.',
+        "ICR004": "A string or a block comment is never closed.",
+        "ICR005": "Parentheses are nested too deeply.",
+        "ICR006": "The file holds no form at all.",
+        "ICR007": "A top-level form has an unknown name.",
+        "ICR008": "A field has an unknown name, or cannot stand in this form.",
+        "ICR009": "A word or parenthesis stands where the language does not allow it.",
+        "ICR010": "A number or a string escape cannot be represented.",
+        "ICR011": "Something is stated twice, or a required field is missing.",
+        "ICR012": "A variable is used but never bound.",
+        "ICR013": "A predicate is neither perceived, derived, asserted nor `attached`.",
+        "ICR014": "A predicate, skill or action has the wrong number of arguments.",
+        "ICR015": "An attribute is not declared.",
+        "ICR016": "A function is unknown.",
+        "ICR017": "A function has the wrong number or kind of arguments.",
+        "ICR018": "The clauses of one concept have different attributes.",
+        "ICR019": "A concept depends on its own negation.",
+        "ICR020": "Two tasks have the same name.",
+        "ICR021": "A task has no goal.",
+        "ICR022": "A skill has both :actions and :subskills, or neither.",
+        "ICR023": "A skill is called that has no clause.",
+        "ICR024": "The child or parent of an attachment does not occur in its attach pattern.",
+        "ICR025": "A variable stands in a test, where everything must be ground.",
+        "ICR026": "A driver command is written without its star.",
+        "ICR027": "A predicate is taken to be perceived, because no percept type is declared.",
+        "ICR028": "An older spelling is used that still loads.",
+        "ICR029": "A variable occurs only once.",
+        "ICR030": "A variable occurs only inside `not`, which then reads: there is none.",
+        "ICR031": "A removing effect has a variable that is never bound: it removes every match.",
+        "ICR032": "A name is both a percept type and a concept.",
+        "ICR033": "A skill's argument is bound by nothing but its caller.",
+        "ICR034": "A recursive concept computes one of its arguments and may never come to an end.",
+    }
+)
+"""Every code that can be reported, with the one sentence that says what it means."""
+
+_TAB = 4
+_LONGEST_LINE = 120
+
+
+class Severity(StrEnum):
+    """How bad it is: only errors keep a domain from loading."""
+
+    ERROR = "error"
+    WARNING = "warning"
+    NOTE = "note"
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnostic:
+    """One finding about a domain file.
+
+    Args:
+        path: The file, as shown to the user.
+        span: The stretch of text it is about; `NOWHERE` if it has no place.
+        severity: Error, warning or note.
+        code: One of `CODES`.
+        message: What is wrong, without a full stop.
+        hint: What to do about it; may be empty.
+        label: A few words beside the carets; may be empty.
+    """
+
+    path: str
+    span: Span
+    severity: Severity
+    code: str
+    message: str
+    hint: str = ""
+    label: str = ""
+
+    def to_json(self) -> dict[str, str | int]:
+        """Give the object that `icarus check --json` lists."""
+        return to_json(self)
+
+
+class DomainError(IcarusError, ValueError):
+    """A domain cannot be loaded; `str()` shows every error with its line and carets.
+
+    Args:
+        diagnostics: Everything found, warnings and notes included.
+        source: The text the diagnostics point into.
+    """
+
+    def __init__(self, diagnostics: Iterable[Diagnostic], source: Source) -> None:
+        self.diagnostics = tuple(diagnostics)
+        self.source = source
+        errors = [found for found in self.diagnostics if found.severity is Severity.ERROR]
+        texts = [render(error, source) for error in errors]
+        if len(errors) > 1:
+            texts.append(f"{source.path}: {len(errors)} errors")
+        super().__init__("\n".join(texts))
+
+    def __reduce__(self) -> tuple[type[DomainError], tuple[tuple[Diagnostic, ...], Source]]:
+        return DomainError, (self.diagnostics, self.source)
+
+
+def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
+    """Tell whether any of the diagnostics keeps the domain from loading."""
+    return any(found.severity is Severity.ERROR for found in diagnostics)
+
+
+def in_order(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
+    """Sort diagnostics by their place in the file, keeping the order of those at one place."""
+    return tuple(sorted(diagnostics, key=lambda found: (found.span.line, found.span.column)))
+
+
+def to_json(diagnostic: Diagnostic) -> dict[str, str | int]:
+    """Give the diagnostic as the object that `icarus check --json` lists."""
+    span = diagnostic.span
+    return {
+        "file": diagnostic.path,
+        "line": span.line,
+        "column": span.column,
+        "end_line": span.end_line,
+        "end_column": span.end_column,
+        "severity": diagnostic.severity.value,
+        "code": diagnostic.code,
+        "message": diagnostic.message,
+        "hint": diagnostic.hint,
+    }
+
+
+def render(diagnostic: Diagnostic, source: Source | str) -> str:
+    """Write the diagnostic out: place and message, the line with carets under it, the hint.
+
+    A span over several lines is underlined to the end of its first line. Tabs are shown as
+    spaces, wide and combining characters keep the carets in place, long lines are cut.
+
+    Args:
+        diagnostic: What to show.
+        source: The text it points into.
+    """
+    text = source if isinstance(source, str) else source.text
+    place = diagnostic.path
+    if diagnostic.span.line:
+        place += f":{diagnostic.span.line}:{diagnostic.span.column}"
+    lines = [f"{place}: {diagnostic.severity}[{diagnostic.code}]: {diagnostic.message}"]
+    lines += _excerpt(diagnostic, text)
+    if diagnostic.hint:
+        lines.append(f"   hint: {diagnostic.hint}")
+    return "\n".join(lines)
+
+
+def _excerpt(diagnostic: Diagnostic, source: str) -> list[str]:
+    """Give the source line and the line of carets, or nothing if the place is not in the text."""
+    span = diagnostic.span
+    text = source.split("\n")
+    if not 1 <= span.line <= len(text):
+        return []
+    cells = _cells(text[span.line - 1].rstrip("\r"))
+    start = min(span.column - 1, len(cells))
+    stop = span.end_column - 1 if span.end_line == span.line else len(cells)
+    stop = max(start + 1, min(stop, len(cells)))
+    cut_from = _first_shown(cells, start, stop)
+    shown = cells[cut_from : cut_from + _LONGEST_LINE]
+    before = sum(width for _, width in shown[: start - cut_from])
+    under = sum(width for _, width in shown[start - cut_from : stop - cut_from])
+    opening = "…" if cut_from else ""
+    closing = "…" if cut_from + _LONGEST_LINE < len(cells) else ""
+    line = opening + "".join(glyph for glyph, _ in shown) + closing
+    carets = " " * (len(opening) + before) + "^" * max(under, 1)
+    label = f" {diagnostic.label}" if diagnostic.label else ""
+    return [f"{span.line:>5} | {line}".rstrip(), f"{'':>5} | {carets}{label}"]
+
+
+def _first_shown(cells: list[tuple[str, int]], start: int, stop: int) -> int:
+    """Choose where a long line is cut so that the span stays in sight."""
+    if len(cells) <= _LONGEST_LINE or stop <= _LONGEST_LINE:
+        return 0
+    return max(0, start - _LONGEST_LINE // 4)
+
+
+def _cells(line: str) -> list[tuple[str, int]]:
+    """Give what is shown for each character, with the number of columns it takes."""
+    cells: list[tuple[str, int]] = []
+    column = 0
+    for character in line:
+        if character == "\t":
+            glyph = " " * (_TAB - column % _TAB)
+            width = len(glyph)
+        elif unicodedata.category(character) in ("Mn", "Me"):
+            glyph, width = character, 0
+        elif not character.isprintable():
+            glyph, width = "\N{REPLACEMENT CHARACTER}", 1
+        else:
+            wide = unicodedata.east_asian_width(character) in ("W", "F")
+            glyph, width = character, 2 if wide else 1
+        cells.append((glyph, width))
+        column += width
+    return cells
