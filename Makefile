@@ -8,7 +8,7 @@ BIN := $(VENV)/bin
 PACKAGES := icarus_lite aapa runtime
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt
 
-.PHONY: demo demo-without test check lint types imports format picture clean help
+.PHONY: demo demo-without test check lint types imports format picture bench-task clean help
 
 help: ## list the targets
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/'
@@ -49,6 +49,12 @@ imports: $(VENV)/.installed-dev ## who may import whom
 format: $(VENV)/.installed-dev ## lay the code out
 	$(BIN)/ruff format .
 	$(BIN)/ruff check --fix .
+
+picture: $(VENV)/.installed ## draw the picture of the README (needs EGL or OSMesa)
+	$(BIN)/python examples/02_picture_of_the_cell.py docs/images/cell.png
+
+bench-task: $(VENV)/.installed ## task 1.1 on twenty seeds, with and without attachments
+	$(BIN)/python benchmarks/attach_hub_cover.py --seeds 20 --out docs/results/task-1.1.md
 
 clean: ## remove the virtual environment and what tools left behind
 	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache .hypothesis build dist

@@ -2,6 +2,7 @@
 
 IcarusError
 ├── DomainError (ValueError)        a domain file has problems; carries them all
+├── NotStratifiedError (ValueError) a concept depends on its own negation
 ├── FrameError (ValueError)         a recorded frame, percept or action is malformed
 ├── TraceError (ValueError)         a trace cannot be read
 └── InferenceError (ValueError)     a rule failed while it ran (a wrong type in a test, a budget)

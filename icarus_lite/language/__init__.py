@@ -1,6 +1,7 @@
 """The language of ICARUS domains: text into a checked syntax tree."""
 
 from icarus_lite.language.checker import check_domain
+from icarus_lite.language.commands import check_commands
 from icarus_lite.language.diagnostics import (
     CODES,
     Diagnostic,
@@ -24,6 +25,7 @@ __all__ = [
     "Function",
     "NotStratifiedError",
     "Severity",
+    "check_commands",
     "check_domain",
     "diagnose_file",
     "evaluate",

@@ -50,6 +50,7 @@ CODES: Mapping[str, str] = MappingProxyType(
         "ICR032": "A name is both a percept type and a concept.",
         "ICR033": "A skill's argument is bound by nothing but its caller.",
         "ICR034": "A recursive concept computes one of its arguments and may never come to an end.",
+        "ICR035": "A skill uses a command that the driver does not offer.",
     }
 )
 """Every code that can be reported, with the one sentence that says what it means."""

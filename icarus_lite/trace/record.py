@@ -96,6 +96,20 @@ def _support(support: Support) -> dict[str, object]:
     }
 
 
+def ensure_writable(path: str | Path) -> None:
+    """Make a trace's folder and see that the file can be written, without touching its content.
+
+    Raises:
+        TraceError: it cannot.
+    """
+    try:
+        Path(path).parent.mkdir(parents=True, exist_ok=True)
+        with Path(path).open("a", encoding="utf-8"):
+            pass
+    except OSError as error:
+        raise TraceError(f"cannot be written: {error.strerror}", path=str(path)) from error
+
+
 class TraceWriter:
     """Appends lines to a trace file; each is flushed before the next cycle begins.
 
@@ -109,8 +123,8 @@ class TraceWriter:
 
     def __init__(self, path: str | Path, first: Mapping[str, object]) -> None:
         self.path = Path(path)
+        ensure_writable(path)
         try:
-            self.path.parent.mkdir(parents=True, exist_ok=True)
             self._file = self.path.open("w", encoding="utf-8")
         except OSError as error:
             raise TraceError(f"cannot be written: {error.strerror}", path=str(path)) from error

@@ -40,7 +40,8 @@ def test_every_message_is_word_for_word_as_recorded(code, text, expected):
 
 
 def test_every_code_has_a_recorded_message():
-    assert {code for code, _, _ in CASES} == set(CODES)
+    # What a driver offers is no matter of the text alone: see test_commands.
+    assert {code for code, _, _ in CASES} == set(CODES) - {"ICR035"}
 
 
 def test_codes_are_explained_by_a_sentence_each():

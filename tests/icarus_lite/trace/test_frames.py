@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import json
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -99,10 +100,8 @@ def test_any_bytes_give_frames_or_a_frame_error(
 ) -> None:
     file = tmp_path_factory.mktemp("any") / "frames.jsonl"
     file.write_bytes(content)
-    try:
-        list(read_frames(file))
-    except FrameError as error:
-        assert str(file) in str(error)
+    with suppress(FrameError):
+        assert all(frame.line >= 1 for frame in read_frames(file))
 
 
 def test_beliefs_are_sorted_one_line_a_cycle() -> None:

@@ -1,0 +1,47 @@
+"""`icarus check`."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING
+
+import typer
+
+from runtime.cli.app import BAD_INPUT, HOLDS, DomainFiles, Json, app
+
+if TYPE_CHECKING:
+    from icarus_lite.language import Diagnostic
+
+
+@app.command(
+    epilog="Example: icarus check domains/gearbox.icr",
+)
+def check(
+    files: DomainFiles,
+    *,
+    as_json: Json = False,
+) -> None:
+    """Parse and check domain files; tell every problem with file, line, column and a hint."""
+    from icarus_lite.language import diagnose_file, render, to_json
+
+    found: list[Diagnostic] = []
+    for file in files:
+        _, source, diagnostics = diagnose_file(file)
+        found.extend(diagnostics)
+        if not as_json:
+            for diagnostic in diagnostics:
+                typer.echo(render(diagnostic, source), err=True)
+    errors = sum(d.severity == "error" for d in found)
+    if as_json:
+        typer.echo(json.dumps([to_json(d) for d in found], ensure_ascii=False, indent=2))
+    else:
+        typer.echo(_summary(len(files), found))
+    raise typer.Exit(BAD_INPUT if errors else HOLDS)
+
+
+def _summary(files: int, found: list[Diagnostic]) -> str:
+    counted = {
+        name: sum(d.severity == name for d in found) for name in ("error", "warning", "note")
+    }
+    said = ", ".join(f"{n} {name}{'s' * (n != 1)}" for name, n in counted.items() if n)
+    return f"{files} file{'s' * (files != 1)}: {said or 'no problems'}"

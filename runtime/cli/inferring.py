@@ -1,0 +1,53 @@
+"""`icarus infer`."""
+
+from __future__ import annotations
+
+import sys
+from contextlib import AbstractContextManager, nullcontext
+from pathlib import Path
+from typing import Annotated, TextIO
+
+import typer
+
+from icarus_lite import FrameError, InferenceError
+from runtime.cli.app import DomainFile, app, load
+
+
+@app.command(
+    epilog="Example: icarus infer domains/gearbox.icr --frames recorded.jsonl --out beliefs.jsonl",
+)
+def infer(
+    file: DomainFile,
+    frames: Annotated[Path, typer.Option(help="Recorded percepts and actions, one cycle a line.")],
+    out: Annotated[
+        Path | None, typer.Option(help="Where to write; standard output if left out.")
+    ] = None,
+) -> None:
+    """Infer the beliefs of each recorded cycle."""
+    from icarus_lite.inference import InferenceEngine, Memory
+    from icarus_lite.trace import beliefs_line, read_frames
+
+    engine = InferenceEngine(load(file))
+    memory = Memory()
+    with _sink(out) as sink:
+        for frame in read_frames(frames):
+            try:
+                memory = engine.step(memory, frame.percepts, frame.outcomes)
+            except FrameError as error:
+                raise FrameError(error.message, path=str(frames), line=frame.line) from None
+            except InferenceError as error:
+                raise InferenceError(f"{frames}:{frame.line}: {error}") from None
+            for note in memory.state.notes:
+                typer.echo(f"{frames}:{frame.line}: {note}", err=True)
+            sink.write(beliefs_line(frame.cycle, memory.state.beliefs) + "\n")
+            sink.flush()
+
+
+def _sink(path: Path | None) -> AbstractContextManager[TextIO]:
+    """Open the output; standard output stays open afterwards."""
+    if path is None:
+        return nullcontext(sys.stdout)
+    try:
+        return path.open("w", encoding="utf-8")
+    except OSError as error:
+        raise FrameError(f"cannot be written: {error.strerror}", path=str(path)) from error

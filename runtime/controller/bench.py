@@ -1,0 +1,216 @@
+r"""The bench port: what a simulated cell or a test wires to the controller, as JSON lines.
+
+Each request is one JSON object on one line, and gets one line back: `{"ok": true, …}` or
+`{"ok": false, "error": "…"}`. Several keys may stand in one request.
+
+- `{"inputs": {"tool_digital_in_0": true}}` sets digital inputs, `{"analog_inputs": [0.5, 0]}`
+  the analog ones, as fractions of their range.
+- `{"wrench": [fx, fy, fz, mx, my, mz]}` is what presses on the tool, N and Nm, base frame.
+- `{"fault": {…}}` with any of `protective_stop: true`, `emergency_stop: true|false` (pressed,
+  released), `kill_script: true`, `drop_rtde: true`, `silence: seconds` of wall time in which
+  nothing runs and nothing answers, `die: true`.
+- `{"query": "state"}` gives joints, TCP, safety, program, inputs and outputs.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from typing import Any, Final
+
+from runtime.controller.connections import Connection, ProtocolViolation
+from runtime.controller.control_box import ControlBox
+from runtime.controller.ports import BANNER
+from runtime.controller.signals import SignalError, parse_digital_input
+
+_LONGEST: Final = 65536
+_LONGEST_SILENCE_S: Final = 600.0
+_LARGEST: Final = 1e12
+
+
+class BenchError(ValueError):
+    """A request is not one the bench knows; the text says what it should be."""
+
+
+class BenchServer:
+    """Carries out bench requests.
+
+    Args:
+        box: The control box on the bench.
+        drop_rtde: Cuts all RTDE connections.
+    """
+
+    def __init__(self, box: ControlBox, drop_rtde: Callable[[], None]) -> None:
+        self._box = box
+        self._drop_rtde = drop_rtde
+        self.silence_s = 0.0
+        self.dying = False
+        self._requests: dict[str, Callable[[Any], dict[str, Any]]] = {
+            "inputs": self._inputs,
+            "analog_inputs": self._analog_inputs,
+            "wrench": self._wrench,
+            "fault": self._fault,
+            "query": self._query,
+        }
+        self._faults: dict[str, Callable[[Any], None]] = {
+            "protective_stop": self._protective_stop,
+            "emergency_stop": self._emergency_stop,
+            "kill_script": self._kill_script,
+            "drop_rtde": self._drop,
+            "silence": self._silence,
+            "die": self._die,
+        }
+
+    def accept(self, connection: Connection) -> _BenchSession:
+        """Begin with a new client."""
+        return _BenchSession(self, connection)
+
+    def answer(self, line: bytes) -> dict[str, Any]:
+        """Carry out one request; a wrong one is answered, not raised."""
+        try:
+            request = json.loads(line)
+        except (ValueError, RecursionError) as error:
+            return {"ok": False, "error": f"this is not a line of JSON: {error}"}
+        if not isinstance(request, dict) or not request:
+            return {"ok": False, "error": f"a request is an object with {_any_of(self._requests)}"}
+        for key in request:
+            if key not in self._requests:
+                error_text = f"there is no request '{key}'; {_any_of(self._requests)}"
+                return {"ok": False, "error": error_text}
+        result: dict[str, Any] = {"ok": True}
+        try:
+            for key, value in request.items():
+                result.update(self._requests[key](value))
+        except (BenchError, SignalError) as error:
+            return {"ok": False, "error": str(error)}
+        return result
+
+    def _inputs(self, levels: Any) -> dict[str, Any]:
+        if not isinstance(levels, dict):
+            raise BenchError('"inputs" takes an object, such as {"tool_digital_in_0": true}')
+        checked = [(parse_digital_input(name), _truth(name, on)) for name, on in levels.items()]
+        for (group, index), on in checked:
+            self._box.signals.set_input(group, index, on=on)
+        return {}
+
+    def _analog_inputs(self, levels: Any) -> dict[str, Any]:
+        self._box.signals.analog_inputs = _numbers("analog_inputs", levels, 2)
+        return {}
+
+    def _wrench(self, wrench: Any) -> dict[str, Any]:
+        fx, fy, fz, mx, my, mz = _numbers("wrench", wrench, 6)
+        self._box.arm.external_wrench = (fx, fy, fz, mx, my, mz)
+        return {}
+
+    def _query(self, what: Any) -> dict[str, Any]:
+        if what != "state":
+            raise BenchError(f'there is no query {what!r}; there is "state"')
+        box = self._box
+        return {
+            "controller": BANNER,
+            "model": box.model.name,
+            "timestamp_s": box.time_s,
+            "joints": list(box.arm.joints),
+            "joint_speeds": box.arm.state.qd.tolist(),
+            "tcp": list(box.arm.tcp_pose),
+            "tcp_offset": list(box.arm.tool.tcp),
+            "payload_kg": box.arm.payload_kg,
+            "steady": box.arm.is_steady,
+            "robot_mode": box.safety.robot_mode.name,
+            "safety": box.safety.mode.name,
+            "safety_reason": box.safety.reason,
+            "program": None if box.program is None else box.program.name,
+            "program_state": box.runtime_state.name,
+            "last_failure": box.last_failure,
+            "inputs": box.signals.named_inputs(),
+            "outputs": box.signals.named_outputs(),
+        }
+
+    def _fault(self, faults: Any) -> dict[str, Any]:
+        if not isinstance(faults, dict) or not faults:
+            raise BenchError(f'"fault" takes an object; {_any_of(self._faults)}')
+        for name in faults:
+            if name not in self._faults:
+                raise BenchError(f"there is no fault '{name}'; {_any_of(self._faults)}")
+        for name, value in faults.items():
+            self._faults[name](value)
+        return {}
+
+    def _protective_stop(self, on: Any) -> None:
+        if _truth("protective_stop", on) and not self._box.protective_stop(
+            "asked for on the bench"
+        ):
+            raise BenchError(
+                f"the arm is stopped already: {self._box.safety.mode.name}, "
+                f"{self._box.safety.robot_mode.name}"
+            )
+
+    def _emergency_stop(self, on: Any) -> None:
+        if _truth("emergency_stop", on):
+            self._box.emergency_stop()
+        else:
+            self._box.safety.release_emergency_stop()
+
+    def _kill_script(self, on: Any) -> None:
+        if _truth("kill_script", on):
+            self._box.stop_program("killed from the bench")
+
+    def _drop(self, on: Any) -> None:
+        if _truth("drop_rtde", on):
+            self._drop_rtde()
+
+    def _silence(self, seconds: Any) -> None:
+        (given,) = _numbers("silence", [seconds], 1)
+        if not 0 < given <= _LONGEST_SILENCE_S:
+            raise BenchError(f'"silence" takes seconds, above 0 and up to {_LONGEST_SILENCE_S:g}')
+        self.silence_s = given
+
+    def _die(self, on: Any) -> None:
+        self.dying = self.dying or _truth("die", on)
+
+
+class _BenchSession:
+    """One client and its unfinished line."""
+
+    def __init__(self, server: BenchServer, connection: Connection) -> None:
+        self._server = server
+        self._connection = connection
+        self._buffer = bytearray()
+
+    def received(self, data: bytes) -> None:
+        self._buffer += data
+        *lines, rest = bytes(self._buffer).split(b"\n")
+        self._buffer = bytearray(rest)
+        if len(rest) > _LONGEST:
+            raise ProtocolViolation(f"a bench request of more than {_LONGEST} bytes")
+        for line in lines:
+            if line.strip():
+                self._connection.send(json.dumps(self._server.answer(line)).encode() + b"\n")
+
+    def closed(self) -> None:
+        """What was wired stays wired."""
+
+
+def _truth(name: str, value: Any) -> bool:
+    if not isinstance(value, bool):
+        raise BenchError(f'"{name}" takes true or false, not {value!r}')
+    return value
+
+
+def _numbers(name: str, values: Any, count: int) -> list[float]:
+    given = values if isinstance(values, list) else []
+    if len(given) != count or not all(_is_finite(value) for value in given):
+        wanted = "a number" if count == 1 else f"a list of {count} numbers"
+        raise BenchError(f'"{name}" takes {wanted}, not {values!r:.80}')
+    return [float(value) for value in given]
+
+
+def _is_finite(value: Any) -> bool:
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return False
+    # An integer of JSON may be beyond any float.
+    return -_LARGEST < value < _LARGEST
+
+
+def _any_of(known: Mapping[str, object]) -> str:
+    return "known are " + ", ".join(f'"{name}"' for name in known)

@@ -1,0 +1,26 @@
+"""Drivers: bodies that carry actions out."""
+
+from __future__ import annotations
+
+from runtime.drivers.driver import ArmState, Driver
+from runtime.drivers.dry_run import DryRunDriver
+from runtime.drivers.limits import MotionError
+from runtime.drivers.motions import plan_motion
+from runtime.drivers.stepping import PARK
+from runtime.drivers.steps import Grip, Look, MoveJoints, MoveLinear, Step
+from runtime.drivers.ur import UrDriver
+
+__all__ = [
+    "PARK",
+    "ArmState",
+    "Driver",
+    "DryRunDriver",
+    "Grip",
+    "Look",
+    "MotionError",
+    "MoveJoints",
+    "MoveLinear",
+    "Step",
+    "UrDriver",
+    "plan_motion",
+]

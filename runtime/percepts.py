@@ -1,0 +1,77 @@
+"""From anchors to percepts: what the mind is told of the world, in the words of the domain."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+from aapa import Anchor, AnchorStatus, Camera, Detection
+from icarus_lite import Percept, Value
+from runtime.config import RobotConfig
+from runtime.drivers.driver import ArmState
+
+HAND = "hand1"
+"""The symbol of the robot's own hand."""
+
+HAND_TYPE = "hand"
+
+_MM = 4
+"""Positions are told to a tenth of a millimetre: digits below that are noise."""
+
+
+def hand_detection(arm: ArmState, camera: Camera, config: RobotConfig) -> Detection:
+    """Give the hand as a body that reports its own place, from the measured joints.
+
+    Its box is the gripper's outline in the image, so that what the gripper hides is understood
+    to be hidden.
+    """
+    x, y, z = arm.tcp_pose[:3]
+    half = config.gripper.width_m / 2
+    corners = [
+        camera.project((x + dx, y + dy, z + dz))
+        for dx in (-half, half)
+        for dy in (-half, half)
+        for dz in (0.0, config.gripper.length_m)
+    ]
+    seen = [(u, v) for u, v, depth in corners if depth > 0.01 and math.isfinite(u + v)]
+    us, vs = [u for u, _ in seen] or [0.0], [v for _, v in seen] or [0.0]
+    return Detection(
+        HAND_TYPE,
+        (min(us), min(vs), max(us), max(vs)),
+        position=(x, y, z),
+        size=(config.gripper.width_m, config.gripper.length_m),
+        name=HAND,
+    )
+
+
+def percepts_of(
+    anchors: Iterable[Anchor], arm: ArmState, config: RobotConfig
+) -> tuple[Percept, ...]:
+    """Tell the anchors as percepts of `gearbox.icr`: `hand` and `object`, in m, base frame."""
+    return tuple(
+        _hand(anchor, arm, config) if anchor.type == HAND_TYPE else _object(anchor)
+        for anchor in anchors
+    )
+
+
+def _hand(anchor: Anchor, arm: ArmState, config: RobotConfig) -> Percept:
+    attributes: dict[str, Value] = _position(anchor)
+    attributes["reach"] = config.reach_m
+    attributes["gripping"] = "yes" if arm.gripped else "no"
+    return Percept("hand", anchor.name, attributes)
+
+
+def _object(anchor: Anchor) -> Percept:
+    attributes: dict[str, Value] = {"type": anchor.type, **_position(anchor)}
+    if anchor.size is not None:
+        attributes["width"] = round(anchor.size[0], _MM)
+        attributes["height"] = round(anchor.size[1], _MM)
+    attributes["seen"] = "yes" if anchor.status is AnchorStatus.VISIBLE else "no"
+    attributes["status"] = str(anchor.status)
+    return Percept("object", anchor.name, attributes)
+
+
+def _position(anchor: Anchor) -> dict[str, Value]:
+    if anchor.position is None:
+        return {}
+    return {axis: round(v, _MM) for axis, v in zip("xyz", anchor.position, strict=True)}

@@ -1,0 +1,69 @@
+from __future__ import annotations
+
+import time
+from multiprocessing import get_context
+
+import pytest
+
+from runtime.drivers import ArmState
+from runtime.drivers.ur_link import Silence, StateBoard
+
+
+def state(number):
+    value = float(number)
+    return ArmState((value,) * 6, (value,) * 6, number % 2 == 0, number % 3 == 0, value)
+
+
+def write_states(board, count):
+    for number in range(count):
+        board.write(state(number), moving=number % 5 == 0)
+
+
+def test_a_board_is_empty_at_first():
+    assert StateBoard().read() is None
+
+
+def test_the_newest_state_is_read():
+    board = StateBoard()
+    before = time.monotonic()
+    board.write(state(1), moving=False)
+    board.write(state(6), moving=True)
+    published = board.read()
+    assert published.arm == state(6)
+    assert published.moving
+    assert before <= published.at_s <= time.monotonic()
+    assert board.read() == published
+
+
+def test_a_reader_never_sees_half_a_state_of_another_process():
+    board = StateBoard()
+    count = 20000
+    writer = get_context("spawn").Process(target=write_states, args=(board, count), daemon=True)
+    writer.start()
+    deadline = time.monotonic() + 30
+    seen = set()
+    while time.monotonic() < deadline and max(seen, default=0) < count - 1:
+        published = board.read()
+        if published is not None:
+            number = int(published.arm.timestamp_s)
+            assert published.arm == state(number)
+            assert published.moving == (number % 5 == 0)
+            seen.add(number)
+    writer.join(10)
+    writer.close()
+    assert max(seen) == count - 1
+    assert len(seen) > 10
+
+
+def test_silence_is_counted_from_the_last_news():
+    silence = Silence(blink_s=0.02)
+    assert silence.since(1.0, 100.0) == 0.0
+    assert silence.since(1.0, 100.01) == pytest.approx(0.01)
+    assert silence.since(1.0, 100.02) == pytest.approx(0.02)
+    assert silence.since(1.1, 100.03) == 0.0
+
+
+def test_own_absence_is_not_taken_for_silence():
+    silence = Silence(blink_s=0.02)
+    silence.since(1.0, 100.0)
+    assert silence.since(1.0, 160.0) == 0.02
