@@ -8,8 +8,8 @@ from icarus_lite import Agent, Outcome, Percept, load_domain
 agent = Agent(load_domain("domains/gearbox.icr"), goals=["(attached hubcover case)"])
 percepts = [
     Percept("hand", "hand1", {"reach": 0.85}),
-    Percept("object", "hubcover", {"type": "hubcover", "x": 0.40, "y": 0.10, "z": 0.01}),
-    Percept("object", "case", {"type": "case", "x": 0.42, "y": -0.10, "z": 0.04}),
+    Percept("object", "hubcover", {"type": "hubcover", "x": 0.4, "y": 0.1, "z": 0, "seen": "yes"}),
+    Percept("object", "case", {"type": "case", "x": 0.4, "y": -0.1, "z": 0, "seen": "yes"}),
 ]
 decision = agent.cycle(percepts)
 print("decided:", decision.action, "because", decision.reason)
