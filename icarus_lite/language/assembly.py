@@ -9,7 +9,7 @@ from types import MappingProxyType
 from typing import TypeVar
 
 from icarus_lite.language.diagnostics import Diagnostic
-from icarus_lite.language.parts import Clause, Command, Field, Form, Word
+from icarus_lite.language.parts import Clause, Command, Field, Form, Group, Word
 from icarus_lite.language.report import Report
 from icarus_lite.language.syntax import (
     Atom,
@@ -21,6 +21,7 @@ from icarus_lite.language.syntax import (
     Constant,
     Domain,
     DomainTest,
+    LaterCycle,
     PerceptType,
     SkillClause,
     Source,
@@ -42,7 +43,7 @@ _MODERN_FIELDS: Mapping[str, str] = MappingProxyType(
         ":subgoals": ":subskills",
     }
 )
-_Value = TypeVar("_Value", Atom, Bind, Call, Command, Condition, Constant, Word)
+_Value = TypeVar("_Value", Atom, Bind, Call, Command, Condition, Constant, Group, Word)
 
 
 def assemble(forms: Iterable[Form], source: Source) -> tuple[Domain, tuple[Diagnostic, ...]]:
@@ -200,13 +201,34 @@ class _Draft:
 
     def _test(self, form: Form) -> DomainTest:
         fields = self._fields(_form_fields(form), older=False)
+        goals = _values(fields, ":goal", Condition)
+        if ":plan" in fields and not goals:
+            self.report.error(
+                form.words[0].span,
+                "ICR011",
+                f"the test `{form.words[0].text}` has a `:plan` but no `:goal`",
+                "say what the plan is for: :goal ((attached hubcover case))",
+            )
         return DomainTest(
             name=form.words[0].text,
             percepts=_values(fields, ":percepts", Atom),
             actions=_values(fields, ":action", Atom),
             expect=_values(fields, ":expect", Atom),
             expect_not=_values(fields, ":expect-not", Atom),
+            then=tuple([self._later(group) for group in _values(fields, ":then", Group)]),
+            goals=goals,
+            plan=_values(fields, ":plan", Atom) if ":plan" in fields else None,
             span=form.span,
+        )
+
+    def _later(self, group: Group) -> LaterCycle:
+        fields = self._fields(group.fields, older=False)
+        return LaterCycle(
+            percepts=_values(fields, ":percepts", Atom) if ":percepts" in fields else None,
+            actions=_values(fields, ":action", Atom),
+            expect=_values(fields, ":expect", Atom),
+            expect_not=_values(fields, ":expect-not", Atom),
+            span=group.span,
         )
 
     def _fields(self, fields: Iterable[Field], *, older: bool = True) -> dict[str, list[object]]:

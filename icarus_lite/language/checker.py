@@ -18,6 +18,7 @@ from icarus_lite.language.syntax import (
     Constant,
     Domain,
     DomainTest,
+    LaterCycle,
     SkillClause,
     Variable,
 )
@@ -186,7 +187,16 @@ class _Check:
             self._conditions(task.goals)
 
     def _test(self, test: DomainTest) -> None:
-        for percept in test.percepts:
+        self._cycle_of_test(test, test.percepts)
+        for later in test.then:
+            self._cycle_of_test(later, later.percepts or ())
+        self._conditions(test.goals)
+        for step in test.plan or ():
+            self._action_pattern(step)
+            self._ground(step, "a plan of a test")
+
+    def _cycle_of_test(self, test: DomainTest | LaterCycle, percepts: Iterable[Atom]) -> None:
+        for percept in percepts:
             if self._defined(percept.predicate, Origin.PERCEPT):
                 self._pattern(percept)
             elif self._domain.percepts:

@@ -33,6 +33,8 @@ _MODERN_FIELDS = {
     "ACTION": ":action",
     "EXPECT": ":expect",
     "EXPECT_NOT": ":expect-not",
+    "THEN": ":then",
+    "PLAN": ":plan",
 }
 _OLDER_FIELDS = {
     "CONDITIONS": ":conditions",

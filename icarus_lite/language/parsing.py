@@ -21,6 +21,7 @@ from icarus_lite.language.parts import (
     FieldValue,
     Form,
     FormItem,
+    Group,
     MalformedTermError,
     Word,
 )
@@ -164,6 +165,9 @@ class _Parts(Transformer[Token, tuple[Form, ...]]):
         if values and isinstance(values[0], tuple):
             values = values[0]
         return Field(_word(children[0]), cast("tuple[FieldValue, ...]", values))
+
+    def later_cycle(self, children: list[Any]) -> Group:
+        return Group(tuple(children[1:-1]), _between(children[0], children[-1]))
 
     def goal(self, children: list[Any]) -> tuple[Condition, ...]:
         return tuple([child for child in children if isinstance(child, Condition)])

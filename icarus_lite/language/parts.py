@@ -36,7 +36,7 @@ class Command:
     starred: bool
 
 
-FieldValue: TypeAlias = Condition | Call | Bind | Atom | Command | Term | Word
+FieldValue: TypeAlias = "Condition | Call | Bind | Atom | Command | Term | Word | Group"
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +45,14 @@ class Field:
 
     keyword: Word
     values: tuple[FieldValue, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    """Fields in parentheses of their own: an entry of `:then`."""
+
+    fields: tuple[Field, ...]
+    span: Span
 
 
 @dataclass(frozen=True, slots=True)

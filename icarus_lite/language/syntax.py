@@ -185,14 +185,47 @@ class Task:
 
 
 @dataclass(frozen=True, slots=True)
+class LaterCycle:
+    """A cycle of a test after its first one, an entry of `:then`.
+
+    Args:
+        percepts: What is perceived in it; None where it says nothing, and all is perceived as
+            in the cycle before.
+        actions: What has succeeded since the cycle before.
+        expect: What must be believed in it.
+        expect_not: What must not be believed in it.
+    """
+
+    percepts: tuple[Atom, ...] | None
+    actions: tuple[Atom, ...]
+    expect: tuple[Atom, ...]
+    expect_not: tuple[Atom, ...]
+    span: Span = field(default=NOWHERE, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
 class DomainTest:
-    """A `(test …)` form: given these percepts and this action, expect these beliefs."""
+    """A `(test …)` form: given these percepts and this action, expect these beliefs.
+
+    Args:
+        name: What it shows, in words.
+        percepts: What is perceived in the first cycle.
+        actions: What has succeeded just before it.
+        expect: What must be believed in it.
+        expect_not: What must not be believed in it.
+        then: The cycles that follow, in order.
+        goals: A goal for which, after the last cycle, there must be a plan; empty for none.
+        plan: The steps of that plan; None where only its existence matters.
+    """
 
     name: str
     percepts: tuple[Atom, ...]
     actions: tuple[Atom, ...]
     expect: tuple[Atom, ...]
     expect_not: tuple[Atom, ...]
+    then: tuple[LaterCycle, ...] = ()
+    goals: tuple[Condition, ...] = ()
+    plan: tuple[Atom, ...] | None = None
     span: Span = field(default=NOWHERE, compare=False)
 
 
