@@ -43,6 +43,8 @@ _KILL_WITHIN_S: Final = 0.5
 _SETTLE_S: Final = 0.1  # after a stop was ordered, states older than this say nothing of it
 _LONGEST_BLINK_S: Final = 0.25  # cycles are shorter, unless this process was kept waiting
 _WORDS_KEPT: Final = 20
+_STAND_IN_SILENCE_S: Final = 2.0
+_STAND_IN_WATCHDOG_HZ: Final = 1.0
 
 
 class UrDriver(SteppingDriver):
@@ -253,7 +255,10 @@ def _patient(config: RobotConfig) -> RobotConfig:
     return replace(
         config,
         watch=replace(
-            watch, silence_s=max(watch.silence_s, 1.0), watchdog_hz=min(watch.watchdog_hz, 1.0)
+            watch,
+            silence_s=max(watch.silence_s, _STAND_IN_SILENCE_S),
+            worker_silence_s=max(watch.worker_silence_s, _STAND_IN_SILENCE_S),
+            watchdog_hz=min(watch.watchdog_hz, _STAND_IN_WATCHDOG_HZ),
         ),
     )
 

@@ -1,0 +1,73 @@
+"""AAPA over a recording: detections and actions in, anchors out, attachments from the engine."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+
+from aapa import Anchor, Anchoring, AnchoringError, AnchoringParameters, AnchorStatus, Attachment
+from aapa.jsonl import RecordedAction, RecordedFrame
+from icarus_lite import Action, Outcome, Percept, Status
+from icarus_lite.inference import InferenceEngine, Memory
+from icarus_lite.language.syntax import Domain
+
+
+def track(
+    frames: Iterable[RecordedFrame], parameters: AnchoringParameters, domain: Domain | None = None
+) -> Iterator[tuple[int, tuple[Anchor, ...]]]:
+    """Anchor a recording frame by frame.
+
+    The attachments that the anchoring uses in a frame are the beliefs of the frame before, so an
+    action that ended at frame e moves a child from e + 1 on.
+
+    Args:
+        frames: The recording. Its image size, where told, must stay the same.
+        parameters: Of the anchoring; the image size comes from the frames if it is left out.
+        domain: Says which actions attach what to what; None leaves the actions unused.
+
+    Yields:
+        Each frame's number, and the anchors of that frame, by name.
+
+    Raises:
+        AnchoringError: a frame cannot be anchored.
+        InferenceError: a test of the domain cannot be evaluated.
+    """
+    engine = None if domain is None else InferenceEngine(domain)
+    memory, anchoring, size = Memory(), None, parameters.image_size
+    for frame in frames:
+        if frame.image_size is not None and size not in (None, frame.image_size):
+            raise AnchoringError(
+                f"frame {frame.frame} is {frame.image_size[0]} x {frame.image_size[1]} px, "
+                "the ones before are not; a recording has one image size"
+            )
+        size = size or frame.image_size
+        if anchoring is None:
+            anchoring = Anchoring(replace(parameters, image_size=size))
+        pairs = memory.state.hierarchy.pairs()
+        attachments = [Attachment(str(child), str(parent)) for child, parent in pairs]
+        anchors = anchoring.update(frame.detections, attachments)
+        yield frame.frame, anchors
+        if engine is not None:
+            outcomes = [_outcome(action) for action in frame.actions]
+            memory = engine.step(memory, map(_percept, anchors), outcomes)
+
+
+def _outcome(action: RecordedAction) -> Outcome:
+    return Outcome(Action(action.name, action.args), Status(action.status))
+
+
+def _percept(anchor: Anchor) -> Percept:
+    """Tell an anchor as a percept of `cater.icr`: the middle and size of its box, in px."""
+    x1, y1, x2, y2 = anchor.box
+    return Percept(
+        "object",
+        anchor.name,
+        {
+            "type": anchor.type,
+            "x": (x1 + x2) / 2,
+            "y": (y1 + y2) / 2,
+            "width": x2 - x1,
+            "height": y2 - y1,
+            "seen": "yes" if anchor.status is AnchorStatus.VISIBLE else "no",
+        },
+    )
