@@ -8,7 +8,7 @@ BIN := $(VENV)/bin
 PACKAGES := icarus_lite aapa runtime
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt
 
-.PHONY: demo demo-without test check lint types imports format picture bench-task clean help
+.PHONY: demo demo-without test check lint types imports format picture bench-task bench-language fuzz mistakes reference vscode fuzz-engine bench-engine clean help
 
 help: ## list the targets
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/'
@@ -36,9 +36,11 @@ test: $(VENV)/.installed-dev ## run the tests
 
 check: lint types imports ## everything that reads the code without running it
 
-lint: $(VENV)/.installed-dev ## ruff: rules and layout
+lint: $(VENV)/.installed-dev ## rules and layout, of Python and of the domains
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
+	$(BIN)/icarus fmt --check domains/*.icr
+	$(BIN)/icarus check domains/*.icr
 
 types: $(VENV)/.installed-dev ## mypy, strict
 	$(BIN)/mypy
@@ -50,11 +52,33 @@ format: $(VENV)/.installed-dev ## lay the code out
 	$(BIN)/ruff format .
 	$(BIN)/ruff check --fix .
 
+vscode: $(VENV)/.installed ## package the extension for VS Code (needs npm)
+	$(BIN)/python -m icarus_lite.language.textmate editors/vscode/syntaxes/icarus.tmLanguage.json
+	cd editors/vscode && npm install --no-fund --no-audit && npm test && npm run package
+
 picture: $(VENV)/.installed ## draw the picture of the README (needs EGL or OSMesa)
 	$(BIN)/python examples/02_picture_of_the_cell.py docs/images/cell.png
 
 bench-task: $(VENV)/.installed ## task 1.1 on twenty seeds, with and without attachments
 	$(BIN)/python benchmarks/attach_hub_cover.py --seeds 20 --out docs/results/task-1.1.md
+
+bench-language: $(VENV)/.installed ## how long reading and checking a domain takes
+	$(BIN)/python benchmarks/language_speed.py --out docs/results/language.md
+
+fuzz: $(VENV)/.installed ## read 100,000 wrong domain files (five minutes)
+	$(BIN)/python benchmarks/fuzz_language.py --inputs 100000 --seed 1 --out docs/results/fuzz.md
+
+mistakes: $(VENV)/.installed ## typical mistakes, and word for word what is said of them
+	$(BIN)/python benchmarks/mistakes.py --out docs/results/mistakes.md
+
+reference: $(VENV)/.installed ## put the code's tables into the language reference
+	$(BIN)/python -m icarus_lite.language.reference docs/reference/language.md
+
+fuzz-engine: $(VENV)/.installed-dev ## beliefs against clingo's on 10,000 random programs (a minute)
+	ICARUS_FUZZ_PROGRAMS=10000 $(BIN)/python -m pytest -q -n 2 tests/differential
+
+bench-engine: $(VENV)/.installed ## how inference from scratch grows with the scene
+	$(BIN)/python benchmarks/engine_scaling.py
 
 clean: ## remove the virtual environment and what tools left behind
 	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache .hypothesis build dist

@@ -1,10 +1,40 @@
-"""The mind of icarus-lite: a domain language, inference, planning, and the trace of both."""
+"""The mind of icarus-lite: a domain language, inference, planning, and the trace of both.
+
+The names below are imported from their modules when they are first used, so that whoever needs
+one of them, or only one module of the package, does not wait for all the others.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING
 
 from icarus_lite._version import __version__
-from icarus_lite.agent import Agent, Decision, DecisionKind, GoalStatus
-from icarus_lite.errors import FrameError, IcarusError, InferenceError, TraceError
-from icarus_lite.language import DomainError, load_domain
-from icarus_lite.symbols import Action, Belief, Outcome, Percept, Status, Value
+
+if TYPE_CHECKING:
+    from icarus_lite.agent import Agent, Decision, DecisionKind, GoalStatus
+    from icarus_lite.errors import FrameError, IcarusError, InferenceError, TraceError
+    from icarus_lite.language import DomainError, load_domain
+    from icarus_lite.symbols import Action, Belief, Outcome, Percept, Status, Value
+
+_HOMES = {
+    "Action": "symbols",
+    "Agent": "agent",
+    "Belief": "symbols",
+    "Decision": "agent",
+    "DecisionKind": "agent",
+    "DomainError": "language",
+    "FrameError": "errors",
+    "GoalStatus": "agent",
+    "IcarusError": "errors",
+    "InferenceError": "errors",
+    "Outcome": "symbols",
+    "Percept": "symbols",
+    "Status": "symbols",
+    "TraceError": "errors",
+    "Value": "symbols",
+    "load_domain": "language",
+}
 
 __all__ = [
     "Action",
@@ -25,3 +55,10 @@ __all__ = [
     "__version__",
     "load_domain",
 ]
+
+
+def __getattr__(name: str) -> object:
+    """Import a public name from its module when it is first used."""
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)

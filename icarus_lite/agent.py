@@ -13,12 +13,20 @@ from icarus_lite.inference import (
     Explanation,
     Functions,
     InferenceEngine,
-    Memory,
     explain,
+    given_memory,
 )
 from icarus_lite.language.fragments import parse_conditions
-from icarus_lite.language.syntax import Condition, Constant, Domain
-from icarus_lite.planning import Imagination, NoPlan, PlanStep, find_plan, holds
+from icarus_lite.language.syntax import Atom, Condition, Constant, Domain
+from icarus_lite.planning import (
+    Candidate,
+    Imagination,
+    NoPlan,
+    PlanStep,
+    candidates,
+    find_plan,
+    holds,
+)
 from icarus_lite.symbols import Action, Belief, Outcome, Percept, Status
 
 MAX_ATTEMPTS = 3
@@ -57,6 +65,8 @@ class Decision:
         path: The steps from here to the goals, the present one first.
         step: The step to start, continue or abort; None when there is none.
         reason: Why, in words.
+        candidates: Where a plan was looked for, the skills that were considered for its first
+            step, and why the others were not chosen.
     """
 
     cycle: int
@@ -68,6 +78,7 @@ class Decision:
     path: tuple[PlanStep, ...]
     step: PlanStep | None
     reason: str
+    candidates: tuple[Candidate, ...] = ()
 
     @property
     def beliefs(self) -> tuple[Belief, ...]:
@@ -93,6 +104,8 @@ class Agent:
         domain: A checked domain.
         goals: Literals as text or syntax, all to be achieved: `["(attached hubcover case)"]`.
         functions: Python predicates that `:tests` may call by name. They must be pure.
+        given: Facts that are believed from the start, as in a task's `:init`. Percepts among
+            them are left out: perception reports those itself.
 
     Raises:
         DomainError: a goal given as text does not parse.
@@ -112,6 +125,7 @@ class Agent:
         goals: Iterable[str | Condition] = (),
         *,
         functions: Functions | None = None,
+        given: Iterable[Atom] = (),
     ) -> None:
         self.domain = domain
         self.goals: tuple[Condition, ...] = tuple(
@@ -120,10 +134,11 @@ class Agent:
             for condition in (parse_conditions(goal) if isinstance(goal, str) else (goal,))
         )
         self._engine = InferenceEngine(domain, functions)
-        self._memory = Memory()
+        self._memory = given_memory(domain, given)
         self._path: tuple[PlanStep, ...] = ()
         self._running: PlanStep | None = None
         self._failures: dict[Action, list[str]] = {}
+        self._candidates: tuple[Candidate, ...] = ()
 
     @property
     def state(self) -> BeliefState:
@@ -153,6 +168,7 @@ class Agent:
         )
         state = self._memory.state
         self._take_note(outcomes)
+        self._candidates = ()
         kind, reason = self._decide(outcomes)
         if kind is DecisionKind.ACT:
             self._running = self._path[0]
@@ -166,6 +182,7 @@ class Agent:
             self._path,
             self._running,
             reason,
+            self._candidates,
         )
 
     def why(self, belief: str | Belief) -> Explanation:
@@ -214,6 +231,7 @@ class Agent:
                 return DecisionKind.ACT, f"next step of the plan, {len(self._path)} to go"
         excluded = [a for a, reasons in self._failures.items() if len(reasons) >= MAX_ATTEMPTS]
         found = find_plan(self.domain, imagination, self.goals, excluded=excluded)
+        self._candidates = tuple(candidates(self.domain, imagination, self.goals, found))
         if isinstance(found, NoPlan):
             self._path = ()
             given_up = [

@@ -155,7 +155,7 @@ def run_at(
     )
     with TraceWriter(trace, first) as writer:
         result = Loop(
-            Agent(domain, task.goals),
+            Agent(domain, task.goals, given=task.init),
             Anchoring(parameters),
             workplace.driver,
             workplace.source,

@@ -5,12 +5,21 @@ from icarus_lite.inference.closure import Closure
 from icarus_lite.inference.effects import Change, change_of
 from icarus_lite.inference.engine import BeliefState, InferenceEngine, Memory
 from icarus_lite.inference.explanation import Explanation, explain
-from icarus_lite.inference.facts import FactStore, ground, match, percept_fact, unify
+from icarus_lite.inference.facts import FactStore, ground, match, percept_fact, percept_facts, unify
+from icarus_lite.inference.given import GIVEN, given_memory, given_percepts
 from icarus_lite.inference.matching import Evaluator, Functions, Match, Matcher
+from icarus_lite.inference.near_miss import (
+    NearMiss,
+    Obstacle,
+    first_obstacle,
+    near_misses,
+    nearest_beliefs,
+)
 from icarus_lite.inference.supports import Assertion, Derivation, Support
 
 __all__ = [
     "ATTACHED",
+    "GIVEN",
     "Assertion",
     "BeliefState",
     "Change",
@@ -26,12 +35,20 @@ __all__ = [
     "Match",
     "Matcher",
     "Memory",
+    "NearMiss",
+    "Obstacle",
     "Support",
     "advance",
     "change_of",
     "explain",
+    "first_obstacle",
+    "given_memory",
+    "given_percepts",
     "ground",
     "match",
+    "near_misses",
+    "nearest_beliefs",
     "percept_fact",
+    "percept_facts",
     "unify",
 ]

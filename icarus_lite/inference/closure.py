@@ -2,50 +2,62 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterable
+from dataclasses import dataclass
 
-from icarus_lite.errors import InferenceError
-from icarus_lite.inference.facts import FactStore, ground
-from icarus_lite.inference.matching import Evaluator, Match, Matcher
-from icarus_lite.inference.supports import Derivation, Support, bind_pattern
-from icarus_lite.language.stratification import strata
+from icarus_lite.inference.facts import FactStore
+from icarus_lite.inference.matching import Evaluator
+from icarus_lite.inference.rules import Rule
+from icarus_lite.inference.supports import Support
+from icarus_lite.language.stratification import recursive_concepts, strata
 from icarus_lite.language.syntax import ConceptClause
 from icarus_lite.symbols import Belief
 
 
 @dataclass(frozen=True, slots=True)
-class _Rule:
-    clause: ConceptClause
-    matcher: Matcher
+class _Component:
+    """Concepts that depend on one another, mostly a single one, with their rules as written."""
+
+    rules: tuple[Rule, ...]
+    recursive: bool
 
 
 class Closure:
     """Concepts, arranged by stratum so that a `not` is asked only once its answer is final.
 
     Edge from a head to a negated predicate: strictly lower stratum; to a positive one: the same
-    or lower. Within a stratum the clauses are repeated until nothing new comes out.
+    or lower. Concepts that do not depend on themselves are inferred in one pass. The others are
+    repeated until nothing new comes out, each rule joining only what touches a fact that is new
+    since the rule was last asked.
+
+    The order of beliefs and of their derivations is that of asking all rules of a stratum again
+    and again, in the order of the text, each over all facts: rules as written; of one rule, first
+    what rests on the facts that were believed first, its first condition counting most.
 
     Raises:
         InferenceError: the concepts negate through recursion.
     """
 
-    __slots__ = ("_evaluator", "_strata", "concepts")
+    __slots__ = ("_components", "concepts")
 
     def __init__(
         self, clauses: Iterable[ConceptClause], evaluator: Evaluator | None = None
     ) -> None:
-        self._evaluator = evaluator or Evaluator()
+        evaluator = evaluator or Evaluator()
         known = tuple(clauses)
+        recursive = recursive_concepts(known)
         self.concepts = frozenset(clause.head.predicate for clause in known)
-        self._strata = tuple(
-            tuple(
-                _Rule(c, Matcher(c.elements, c.tests, evaluator=self._evaluator))
-                for c in known
-                if c.head.predicate in layer
-            )
-            for layer in strata(known)
-        )
+        by_concept: dict[str, list[int]] = {}
+        for number, clause in enumerate(known):
+            by_concept.setdefault(clause.head.predicate, []).append(number)
+        components = []
+        for layer in strata(known):
+            grows = not recursive.isdisjoint(layer)
+            growing = frozenset(layer) if grows else frozenset()
+            numbers = sorted(number for concept in layer for number in by_concept[concept])
+            rules = tuple(Rule(known[number], growing, evaluator) for number in numbers)
+            components.append(_Component(rules, grows))
+        self._components = tuple(components)
 
     def derive(
         self, facts: FactStore, denied: frozenset[Belief] = frozenset()
@@ -64,33 +76,24 @@ class Closure:
         Raises:
             InferenceError: a test or a bind cannot be evaluated; the text has the place.
         """
-        found: dict[Belief, dict[tuple[int, str], Support]] = {}
-        for rules in self._strata:
-            fresh = True
-            while fresh:
+        found: dict[Belief, list[Support]] = {}
+        for component in self._components:
+            asked = [0] * len(component.rules)
+            first, fresh = True, True
+            while fresh and (first or component.recursive):
                 fresh = False
-                for number, rule in enumerate(rules):
-                    for belief, match in tuple(self._heads(rule, facts)):
+                for number, rule in enumerate(component.rules):
+                    since, asked[number] = asked[number], facts.count
+                    # All of it before any is added: a rule does not see what it just concluded.
+                    follows = tuple(rule.all(facts) if first else rule.new(facts, since))
+                    for belief, derivation in follows:
                         if belief in denied:
                             continue
-                        supports = found.setdefault(belief, {})
-                        key = (number, repr(sorted(match.bindings.items())))
-                        if key not in supports:
-                            supports[key] = _derivation(rule.clause, match)
+                        supports = found.get(belief)
+                        if supports is None:
+                            found[belief] = [derivation]
+                        else:
+                            supports.append(derivation)
                         fresh |= facts.add(belief)
-        return {belief: tuple(supports.values()) for belief, supports in found.items()}
-
-    def _heads(self, rule: _Rule, facts: FactStore) -> Iterator[tuple[Belief, Match]]:
-        for match in rule.matcher.matches(facts):
-            bindings = dict(match.bindings)
-            for bind in rule.clause.binds:
-                bindings[bind.variable.name] = self._evaluator(bind.expression, bindings)
-            belief = ground(rule.clause.head, bindings)
-            if belief is None:
-                raise InferenceError(f"a variable of the head {rule.clause.head} is never bound")
-            yield belief, replace(match, bindings=bindings)
-
-
-def _derivation(clause: ConceptClause, match: Match) -> Derivation:
-    absent = tuple(bind_pattern(atom, match.bindings) for atom in match.absent)
-    return Derivation(clause, match.bindings, match.matched, absent)
+                first = False
+        return {belief: tuple(supports) for belief, supports in found.items()}

@@ -10,9 +10,10 @@ from icarus_lite.errors import FrameError
 from icarus_lite.inference.attachment import ATTACHED, Hierarchy, advance
 from icarus_lite.inference.closure import Closure
 from icarus_lite.inference.effects import Change, change_by_action
-from icarus_lite.inference.facts import FactStore, percept_fact
+from icarus_lite.inference.facts import FactStore, Lineages, percept_facts
 from icarus_lite.inference.matching import Evaluator, Functions
 from icarus_lite.inference.supports import Assertion, Support
+from icarus_lite.language.percept_types import lineages
 from icarus_lite.language.syntax import Domain
 from icarus_lite.symbols import Belief, Outcome, Percept, Status, is_number
 
@@ -27,6 +28,7 @@ class BeliefState:
         supports: Each belief (percepts left out) with all its supports, never empty.
         hierarchy: The attachment hierarchy behind the `attached` beliefs.
         notes: What the person should know, such as an attachment refused as circular.
+        lineages: Each percept type with all types that its percepts belong to, its own first.
     """
 
     cycle: int = -1
@@ -34,6 +36,7 @@ class BeliefState:
     supports: Mapping[Belief, tuple[Support, ...]] = field(default_factory=dict)
     hierarchy: Hierarchy = field(default_factory=Hierarchy)
     notes: tuple[str, ...] = ()
+    lineages: Lineages = field(default_factory=dict)
 
     def __contains__(self, belief: Belief) -> bool:
         return belief in self.supports
@@ -45,7 +48,7 @@ class BeliefState:
 
     def facts(self) -> FactStore:
         """Give percepts and beliefs together, to match patterns against."""
-        store = FactStore(percept_fact(percept) for percept in self.percepts)
+        store = FactStore(percept_facts(self.percepts, self.lineages))
         for belief in self.supports:
             store.add(belief)
         return store
@@ -81,10 +84,11 @@ class InferenceEngine:
         functions: Python predicates that `:tests` may call by name. They must be pure.
     """
 
-    __slots__ = ("closure", "domain", "evaluator")
+    __slots__ = ("closure", "domain", "evaluator", "lineages")
 
     def __init__(self, domain: Domain, functions: Functions | None = None) -> None:
         self.domain = domain
+        self.lineages = lineages(domain.percepts)
         self.evaluator = Evaluator(functions or {}, domain.source.path)
         self.closure = Closure(domain.concepts, self.evaluator)
 
@@ -100,26 +104,31 @@ class InferenceEngine:
         Args:
             memory: What was carried over from the last cycle; `Memory()` at the start.
             percepts: Everything perceived now (anchored objects, seen or hidden).
-            outcomes: The actions that ended (or still run) since the last cycle, in order.
+            outcomes: The actions that ended (or still run) since the last cycle, in order. Each is
+                judged by the state that those before it have left.
             changes: For outcome number i, its exact effects where they are known (the agent
                 planned them); otherwise they are worked out from the skill's clauses.
 
         Raises:
-            FrameError: two percepts of one type share a name, or an attribute is not finite.
+            FrameError: two percepts of one type, or of a type and its subtype, share a name, or an
+                attribute is not finite.
             InferenceError: a test of the domain cannot be evaluated.
         """
-        seen = _checked(percepts)
+        seen = _checked(percepts, self.lineages)
         cycle = memory.state.cycle + 1
         present = frozenset(percept.name for percept in seen)
         known = memory.known | present
         asserted, hierarchy = dict(memory.asserted), memory.state.hierarchy
         notes: list[str] = []
-        before = memory.state.facts()
+        before: FactStore | None = memory.state.facts()
         for number, outcome in enumerate(outcomes):
             if outcome.status is not Status.SUCCEEDED:
                 continue
             change = (changes or {}).get(number)
             if change is None:
+                if before is None:  # what the outcomes so far have left, as far as was perceived
+                    percepts_then = memory.state.percepts
+                    before = self._infer(cycle, percepts_then, asserted, hierarchy, ()).facts()
                 change = change_by_action(
                     self.domain.skills, outcome.action, before, self.evaluator
                 )
@@ -129,6 +138,7 @@ class InferenceEngine:
             notes.extend(refused)
             hierarchy, refused = advance(hierarchy, self.domain.attachments, outcome.action, cycle)
             notes.extend(refused)
+            before = None
         gone = known - present
         asserted = {b: a for b, a in asserted.items() if gone.isdisjoint(b.args)}
         hierarchy = hierarchy.without(p for p in hierarchy.pairs() if not gone.isdisjoint(p))
@@ -155,17 +165,17 @@ class InferenceEngine:
         given: dict[Belief, tuple[Support, ...]] = {b: (cause,) for b, cause in asserted.items()}
         for belief, link in hierarchy.beliefs():
             given[belief] = (Assertion(link.action, link.cycle),)
-        facts = FactStore(percept_fact(percept) for percept in percepts)
+        facts = FactStore(percept_facts(percepts, self.lineages))
         for belief in given:
             facts.add(belief)
         for belief, supports in self.closure.derive(facts).items():
             given[belief] = given.get(belief, ()) + supports
-        return BeliefState(cycle, percepts, given, hierarchy, notes)
+        return BeliefState(cycle, percepts, given, hierarchy, notes, self.lineages)
 
 
-def _checked(percepts: Iterable[Percept]) -> tuple[Percept, ...]:
+def _checked(percepts: Iterable[Percept], lineages: Lineages) -> tuple[Percept, ...]:
     seen = tuple(percepts)
-    counts = Counter((percept.type, percept.name) for percept in seen)
+    counts = Counter((fact.predicate, fact.args[0]) for fact in percept_facts(seen, lineages))
     for (kind, name), count in counts.items():
         if count > 1:
             raise FrameError(f"{count} percepts of type {kind} are named {name}; names are unique")

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from icarus_lite.inference.engine import BeliefState
-from icarus_lite.inference.facts import percept_fact
+from icarus_lite.inference.facts import percept_facts
+from icarus_lite.inference.given import GIVEN
 from icarus_lite.inference.supports import Assertion, Support
 from icarus_lite.symbols import Belief, Percept
 
@@ -41,7 +42,7 @@ class Explanation:
 def explain(belief: Belief, state: BeliefState) -> Explanation:
     """Explain a belief of a cycle by its first support, which never rests on the belief itself."""
     for percept in state.percepts:
-        if percept_fact(percept) == belief:
+        if belief in percept_facts((percept,), state.lineages):
             return _explain_percept(percept)
     supports = state.supports.get(belief)
     if not supports:
@@ -54,10 +55,12 @@ def _explain_percept(percept: Percept) -> Explanation:
 
 
 def _explain_support(belief: Belief, support: Support, state: BeliefState) -> Explanation:
+    if isinstance(support, Assertion) and support.action == GIVEN:
+        return Explanation(str(belief), "is given from the start")
     if isinstance(support, Assertion):
         because = f"because {support.action} succeeded, reported in cycle {support.cycle}"
         return Explanation(str(belief), because)
-    place = f" (line {support.clause.span.line})" if support.clause.span.line else ""
+    place = f" ({support.clause.span.in_line})" if support.clause.span.line else ""
     return Explanation(
         str(belief),
         f"by its definition{place}",

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from types import MappingProxyType
 
+from icarus_lite.inference.views import Entry, Index, Key, View
 from icarus_lite.language.syntax import Atom, Term, Variable
 from icarus_lite.symbols import Belief, Percept, Value
 
@@ -11,27 +13,58 @@ Bindings = Mapping[str, Value]
 """What each variable, `?` included, is bound to."""
 
 
+Lineages = Mapping[str, Sequence[str]]
+"""Each percept type with all types that its percepts belong to, its own first."""
+
+_NO_ROWS: Mapping[Key, Sequence[Entry]] = MappingProxyType({})
+
+
 def percept_fact(percept: Percept) -> Belief:
     """Give a percept as a fact: its type is the predicate, its name the one argument."""
     return Belief(percept.type, (percept.name,), percept.attributes)
 
 
-class FactStore:
-    """Ground facts by predicate, in the order in which they came to be believed."""
+def percept_facts(percepts: Iterable[Percept], lineages: Lineages) -> Iterator[Belief]:
+    """Give percepts as facts, each once for every type that it belongs to.
 
-    __slots__ = ("_facts",)
+    A percept of a subtype, `(part :is object)`, is a percept of its supertypes as well, with the
+    same name and attributes.
+    """
+    for percept in percepts:
+        yield percept_fact(percept)
+        for supertype in lineages.get(percept.type, ())[1:]:
+            yield Belief(supertype, (percept.name,), percept.attributes)
+
+
+class FactStore:
+    """Ground facts by predicate, in the order in which they came to be believed.
+
+    Each fact has a number, counting up over the whole store, so that "new since then" is a
+    question of numbers. Hash indexes are built when a view is first asked for, and kept up to date
+    from then on.
+    """
+
+    __slots__ = ("_facts", "_indexes", "_indexes_of", "count")
 
     def __init__(self, facts: Iterable[Belief] = ()) -> None:
-        self._facts: dict[str, dict[tuple[Value, ...], Belief]] = {}
+        self.count = 0
+        self._facts: dict[str, dict[Key, Sequence[Entry]]] = {}
+        self._indexes: dict[View, Index] = {}
+        self._indexes_of: dict[str, list[tuple[View, Index]]] = {}
         for fact in facts:
             self.add(fact)
 
     def add(self, fact: Belief) -> bool:
         """Add a fact; tell whether it is new. A fact already there keeps its attributes."""
-        rows = self._facts.setdefault(fact.predicate, {})
-        if fact.args in rows:
+        rows = self._facts.get(fact.predicate)
+        if rows is None:
+            rows = self._facts[fact.predicate] = {}
+        elif fact.args in rows:
             return False
-        rows[fact.args] = fact
+        rows[fact.args] = (((), fact, self.count),)
+        for view, index in self._indexes_of.get(fact.predicate, ()):
+            view.insert(index, fact, self.count)
+        self.count += 1
         return True
 
     def __contains__(self, fact: Belief) -> bool:
@@ -39,18 +72,31 @@ class FactStore:
 
     def __iter__(self) -> Iterator[Belief]:
         for rows in self._facts.values():
-            yield from rows.values()
+            for ((_, fact, _),) in rows.values():
+                yield fact
+
+    def rows(self, predicate: str) -> Mapping[Key, Sequence[Entry]]:
+        """Give the facts of a predicate by all their arguments, as entries that bind nothing."""
+        return self._facts.get(predicate, _NO_ROWS)
+
+    def index(self, view: View) -> Mapping[Key, Sequence[Entry]]:
+        """Give the hash index of a view, built now unless it was asked for before."""
+        index = self._indexes.get(view)
+        if index is None:
+            index = self._indexes[view] = {}
+            for ((_, fact, number),) in self.rows(view.predicate).values():
+                view.insert(index, fact, number)
+            self._indexes_of.setdefault(view.predicate, []).append((view, index))
+        return index
 
     def candidates(self, atom: Atom, bindings: Bindings) -> Iterable[Belief]:
         """Give the facts that may match a pattern: one if its arguments are known, else all."""
-        rows = self._facts.get(atom.predicate)
-        if rows is None:
-            return ()
+        rows = self.rows(atom.predicate)
         args = tuple(resolve(term, bindings) for term in atom.args)
         if all(value is not None for value in args):
-            fact = rows.get(args)  # type: ignore[arg-type] # no None is left in args
-            return () if fact is None else (fact,)
-        return tuple(rows.values())
+            found = rows.get(args, ())  # type: ignore[arg-type] # no None is left in args
+            return tuple(fact for _, fact, _ in found)
+        return tuple(fact for ((_, fact, _),) in rows.values())
 
     def matches(self, atom: Atom, bindings: Bindings) -> Iterator[tuple[dict[str, Value], Belief]]:
         """Give each fact that matches a pattern, with the bindings extended by the match."""

@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from icarus_lite.inference.facts import Bindings, FactStore
+from icarus_lite.inference.join import Conjunction, Plan, compile_plan
+from icarus_lite.inference.views import row_getter
 from icarus_lite.language.functions import evaluate
 from icarus_lite.language.syntax import Atom, Call, Condition, Expression, Variable
 from icarus_lite.symbols import Belief, Value
@@ -55,7 +57,7 @@ class Matcher:
     occurs only inside its `not` and reads "there is none".
     """
 
-    __slots__ = ("_evaluator", "_negative", "_positive", "_tests_at")
+    __slots__ = ("_evaluator", "_plans", "conjunction")
 
     def __init__(
         self,
@@ -65,18 +67,10 @@ class Matcher:
         evaluator: Evaluator | None = None,
     ) -> None:
         self._evaluator = evaluator or Evaluator()
-        self._positive = tuple(c.atom for c in conditions if not c.negated)
-        self._negative = tuple(c.atom for c in conditions if c.negated)
-        known = set(bound)
-        waiting = list(tests)
-        self._tests_at: list[tuple[Call, ...]] = []
-        for atom in (None, *self._positive):
-            if atom is not None:
-                known.update(atom.variables)
-            ready = [test for test in waiting if known.issuperset(variables_of(test))]
-            self._tests_at.append(tuple(ready))
-            waiting = [test for test in waiting if test not in ready]
-        self._tests_at[-1] += tuple(waiting)  # an unbound variable: evaluation says so, with place
+        positive = tuple(c.atom for c in conditions if not c.negated)
+        negative = tuple(c.atom for c in conditions if c.negated)
+        self.conjunction = Conjunction(positive, negative, _in_turn(tests, positive, bound))
+        self._plans: dict[tuple[str, ...], Plan] = {}
 
     def matches(self, facts: FactStore, bindings: Bindings | None = None) -> Iterator[Match]:
         """Give each match, in a fixed order: that of the facts, the first condition slowest.
@@ -84,22 +78,42 @@ class Matcher:
         Raises:
             InferenceError: a test compares what cannot be compared.
         """
-        yield from self._join(0, facts, dict(bindings or {}), ())
+        given = bindings or {}
+        names = tuple(given)
+        plan = self._plans.get(names)
+        if plan is None:
+            plan = self._plans[names] = self.plan(names)
+        slots, negative = plan.slots, self.conjunction.negative
+        values = row_getter(tuple(slots.values()))
+        for row, entries in plan.run(facts, tuple(given.values())):
+            bound = dict(zip(slots, values(row), strict=True))
+            yield Match(bound, tuple(fact for _, fact, _ in entries), negative)
 
-    def _join(
-        self, depth: int, facts: FactStore, bindings: dict[str, Value], matched: tuple[Belief, ...]
-    ) -> Iterator[Match]:
-        for test in self._tests_at[depth]:
-            if not self._evaluator(test, bindings):
-                return
-        if depth < len(self._positive):
-            for extended, fact in facts.matches(self._positive[depth], bindings):
-                yield from self._join(depth + 1, facts, extended, (*matched, fact))
-            return
-        for atom in self._negative:
-            if any(True for _ in facts.matches(atom, bindings)):
-                return
-        yield Match(bindings, matched, self._negative)
+    def plan(
+        self,
+        given: tuple[str, ...] = (),
+        lead: int | None = None,
+        growing: frozenset[str] = frozenset(),
+    ) -> Plan:
+        """Compile the conjunction: see `compile_plan`."""
+        functions, path = self._evaluator.functions, self._evaluator.path
+        return compile_plan(self.conjunction, given, functions, path, lead, growing)
+
+
+def _in_turn(
+    tests: Sequence[Call], positive: Sequence[Atom], bound: Sequence[str]
+) -> tuple[tuple[Call, ...], ...]:
+    """Give the tests to try before the first condition, after the first, and so on."""
+    known, waiting = set(bound), list(tests)
+    turns: list[tuple[Call, ...]] = []
+    for atom in (None, *positive):
+        if atom is not None:
+            known.update(atom.variables)
+        ready = [test for test in waiting if known.issuperset(variables_of(test))]
+        turns.append(tuple(ready))
+        waiting = [test for test in waiting if test not in ready]
+    turns[-1] += tuple(waiting)  # an unbound variable: evaluation says so, with place
+    return tuple(turns)
 
 
 def variables_of(expression: Expression) -> Iterator[str]:

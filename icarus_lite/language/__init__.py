@@ -11,7 +11,8 @@ from icarus_lite.language.diagnostics import (
     render,
     to_json,
 )
-from icarus_lite.language.files import diagnose_file, load_domain
+from icarus_lite.language.files import diagnose_file, diagnose_text, load_domain
+from icarus_lite.language.formatter import format_text
 from icarus_lite.language.fragments import parse_atom, parse_conditions
 from icarus_lite.language.functions import FUNCTIONS, Function, evaluate, function_table
 from icarus_lite.language.reader import parse_domain
@@ -28,7 +29,9 @@ __all__ = [
     "check_commands",
     "check_domain",
     "diagnose_file",
+    "diagnose_text",
     "evaluate",
+    "format_text",
     "function_table",
     "has_errors",
     "load_domain",

@@ -9,12 +9,13 @@ from types import MappingProxyType
 from typing import TypeVar
 
 from icarus_lite.language.diagnostics import Diagnostic
-from icarus_lite.language.parts import Clause, Command, Field, Form, Group, Word
+from icarus_lite.language.parts import Clause, Command, Field, Form, Group, Problem, Word
 from icarus_lite.language.report import Report
 from icarus_lite.language.syntax import (
     Atom,
     AttachmentRule,
     Bind,
+    Breakpoint,
     Call,
     ConceptClause,
     Condition,
@@ -22,9 +23,11 @@ from icarus_lite.language.syntax import (
     Domain,
     DomainTest,
     LaterCycle,
+    LongTermGoal,
     PerceptType,
     SkillClause,
     Source,
+    Span,
     Task,
     Term,
     Variable,
@@ -41,6 +44,8 @@ _MODERN_FIELDS: Mapping[str, str] = MappingProxyType(
         ":start": ":elements",
         ":requires": ":while",
         ":subgoals": ":subskills",
+        ":action": ":actions",
+        ":attributes": ":binds",
     }
 )
 _Value = TypeVar("_Value", Atom, Bind, Call, Command, Condition, Constant, Group, Word)
@@ -73,6 +78,8 @@ class _Draft:
     tasks: list[Task] = field(default_factory=list)
     goals: list[Condition] = field(default_factory=list)
     tests: list[DomainTest] = field(default_factory=list)
+    long_term_goals: list[LongTermGoal] = field(default_factory=list)
+    breakpoints: list[Breakpoint] = field(default_factory=list)
 
     def add(self, form: Form) -> None:
         """Take in one top-level form."""
@@ -96,6 +103,17 @@ class _Draft:
             case "goals":
                 self.goals += [item for item in form.items if isinstance(item, Condition)]
             case _:
+                self._add_rarer(form)
+
+    def _add_rarer(self, form: Form) -> None:
+        match form.keyword.text:
+            case "long-term-goal":
+                self.long_term_goals.append(self._long_term_goal(form))
+            case "break":
+                self._add_breakpoints(form)
+            case "create-problems":
+                self._add_problems(form)
+            case _:
                 self.tests.append(self._test(form))
 
     def domain(self) -> Domain:
@@ -110,6 +128,8 @@ class _Draft:
             tasks=tuple(self.tasks),
             goals=tuple(self.goals),
             tests=tuple(self.tests),
+            long_term_goals=tuple(self.long_term_goals),
+            breakpoints=tuple(self.breakpoints),
             source=self.report.source,
         )
 
@@ -120,7 +140,7 @@ class _Draft:
                 form.keyword.span,
                 "ICR011",
                 "the domain is named a second time",
-                f"it is called `{self.name.text}` at {first.line}:{first.column}; remove one",
+                f"it is called `{self.name.text}` at {first.place}; remove one",
             )
             return
         self.name = form.words[0]
@@ -191,13 +211,64 @@ class _Draft:
     def _task(self, form: Form) -> Task:
         fields = self._fields(_form_fields(form))
         robot = _values(fields, ":robot", Word)
+        agents = _values(fields, ":agents", Word)
+        if agents:
+            what = f"the other agents of the task `{form.words[0].text}`"
+            self._note_idle(agents[0].span, what, "only what its robot can do is planned")
         return Task(
             name=form.words[0].text,
             title=form.words[1].text if len(form.words) > 1 else "",
             robot=robot[0].text if robot else None,
             goals=_values(fields, ":goal", Condition),
+            init=_values(fields, ":init", Atom),
+            agents=tuple([agent.text for agent in agents]),
             span=form.span,
         )
+
+    def _long_term_goal(self, form: Form) -> LongTermGoal:
+        fields = self._fields(_form_fields(form))
+        name, goals = form.words[0], _values(fields, ":goal", Condition)
+        if not goals:
+            message = f"the long-term goal `{name.text}` has no `:goal`"
+            hint = "say what is to hold: :goal ((attached hubcover case))"
+            self.report.error(name.span, "ICR011", message, hint)
+        priority = self._priority(_values(fields, ":priority", Constant))
+        what = f"the long-term goal `{name.text}`"
+        self._note_idle(form.keyword.span, what, "an agent pursues the goals of its task")
+        relevance = _values(fields, ":relevance", Condition)
+        return LongTermGoal(name.text, goals, relevance, priority, form.span)
+
+    def _priority(self, given: tuple[Constant, ...]) -> float:
+        return float(given[0].value) if given else 0.0
+
+    def _add_breakpoints(self, form: Form) -> None:
+        conditions = [item for item in form.items if isinstance(item, Condition)]
+        if not conditions:
+            message = "a break form names no belief to stop at"
+            hint = "name one: (break (attached ?obj case))"
+            self.report.error(form.keyword.span, "ICR011", message, hint)
+        else:
+            self._note_idle(form.keyword.span, "breakpoints", "a run does not stop there")
+        self.breakpoints += [Breakpoint(each, each.span) for each in conditions]
+
+    def _add_problems(self, form: Form) -> None:
+        problems = [item for item in form.items if isinstance(item, Problem)]
+        before = len(self.tasks)
+        for number, problem in enumerate(problems, start=1):
+            task = Task(f"problem-{number}", "", None, problem.conditions, span=problem.span)
+            self.tasks.append(task)
+        named = ", ".join(task.name for task in self.tasks[before:][:3])
+        more = "…" if len(problems) > 3 else ""
+        message = "`create-problems` is an older form"
+        hint = (
+            f"its problems are taken as tasks {named}{more}; write (task NAME :goal (…)) for each"
+        )
+        self.report.note(form.keyword.span, "ICR028", message, hint)
+
+    def _note_idle(self, span: Span, what: str, instead: str) -> None:
+        message = f"nothing acts on {what} yet"
+        hint = f"{instead}; writing it down does no harm"
+        self.report.note(span, "ICR038", message, hint)
 
     def _test(self, form: Form) -> DomainTest:
         fields = self._fields(_form_fields(form), older=False)
@@ -244,7 +315,7 @@ class _Draft:
                     keyword.span,
                     "ICR011",
                     f"`{keyword.text}` is given twice",
-                    f"it stands at {first.line}:{first.column} already; put both lists into one",
+                    f"it stands at {first.place} already; put both lists into one",
                 )
                 continue
             seen[keyword.text] = keyword
@@ -259,6 +330,8 @@ class _Draft:
     def _note_older(self, word: Word, modern: str) -> None:
         message = f"`{word.text}` is an older name of `{modern}`"
         hint = f"write `{modern}`; it means the same"
+        if word.text == ":action":
+            hint = "write `:actions`, with a further pair of parentheses; it means the same"
         self.report.note(word.span, "ICR028", message, hint)
 
 

@@ -16,25 +16,35 @@ from icarus_lite.language.syntax import Span
 MAX_DEPTH = 100
 """How deep parentheses may be nested. Real clauses need about ten."""
 
-FORM_NAMES = (
+MODERN_FORMS = (
     "domain",
+    "include",
     "percepts",
     "concepts",
     "skills",
     "attachments",
     "task",
     "goals",
+    "long-term-goal",
+    "break",
     "test",
+)
+"""The first words of the top-level forms, in the order in which a file has them."""
+
+FORM_NAMES = (
+    *MODERN_FORMS,
     "create-concepts",
     "create-skills",
     "create-goals",
+    "create-problems",
 )
-"""The first words of the top-level forms, the older ones last."""
+"""The same with the older ones, which still load, at the end."""
 
 _MARKS = re.compile(r'[()]|"[^"\\]*(?:\\[\s\S][^"\\]*)*"|;[^\n]*|#\|[\s\S]*?\|#|"|#\|')
 _FORM_AT_MARGIN = re.compile(rf"(?<![^\n])\((?:{'|'.join(FORM_NAMES)})(?=[ \t\n\r\f\v()\"';])")
 _FIRST_WORD = re.compile(r"[^ \t\n\r\f\v()\"';]+")
-_NAMELESS = re.compile(r"(?:[ \t\n\r\f\v]|;[^\n]*|#\|[\s\S]*?\|#)*\(\s*\(")
+# Possessive, for a row of semicolons could be cut into comments in exponentially many ways.
+_NAMELESS = re.compile(r"(?:[ \t\n\r\f\v]|;[^\n]*+|(?>#\|[\s\S]*?\|#))*+\(\s*\(")
 
 
 class Lines:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection
 
 from icarus_lite.language.diagnostics import Diagnostic
-from icarus_lite.language.explanations import closest, listing
+from icarus_lite.language.explanations import listing
 from icarus_lite.language.report import Report
 from icarus_lite.language.syntax import Domain
 
@@ -24,7 +24,7 @@ def check_commands(domain: Domain, offered: Collection[str]) -> tuple[Diagnostic
     for skill in domain.skills:
         for command in skill.actions:
             if command.predicate not in offered:
-                close = closest(command.predicate, offered)
+                close = report.closest(command.predicate, offered)
                 known = listing(f"`*{name}`" for name in sorted(offered))
                 hint = f"did you mean `*{close}`?" if close else f"it offers {known}"
                 message = f"no driver offers the command `*{command.predicate}`"

@@ -5,6 +5,8 @@ A `Diagnostic` is plain data; the command line, the REPL and the Python exceptio
 
 from __future__ import annotations
 
+import functools
+import re
 import unicodedata
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -51,6 +53,17 @@ CODES: Mapping[str, str] = MappingProxyType(
         "ICR033": "A skill's argument is bound by nothing but its caller.",
         "ICR034": "A recursive concept computes one of its arguments and may never come to an end.",
         "ICR035": "A skill uses a command that the driver does not offer.",
+        "ICR036": "A file cannot be included.",
+        "ICR037": "An older construct has no counterpart and is refused.",
+        "ICR038": "A form or field is read, but nothing acts on it yet.",
+        "ICR039": "The supertype of a percept type is unknown, leads back to it, or too far up.",
+        "ICR040": "Nothing uses this name (only told on request).",
+        "ICR041": "A concept can never be true, or a skill never start.",
+        "ICR042": "An effect speaks of what only perception can change.",
+        "ICR043": "The detach action of an attachment never undoes it.",
+        "ICR044": "A test compares what can never be compared, such as a symbol with a number.",
+        "ICR045": "No skill can ever change what a goal asks for.",
+        "ICR070": "A fact of :init cannot be given, or serves nothing.",
     }
 )
 """Every code that can be reported, with the one sentence that says what it means."""
@@ -121,8 +134,16 @@ def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
 
 
 def in_order(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
-    """Sort diagnostics by their place in the file, keeping the order of those at one place."""
-    return tuple(sorted(diagnostics, key=lambda found: (found.span.line, found.span.column)))
+    """Sort diagnostics by their place in the file, keeping the order of those at one place.
+
+    Included files follow one another as they are first spoken of.
+    """
+    found = list(diagnostics)
+    rank: dict[str, int] = {}
+    for each in found:
+        rank.setdefault(each.path, len(rank))
+    found.sort(key=lambda each: (rank[each.path], each.span.line, each.span.column))
+    return tuple(found)
 
 
 def to_json(diagnostic: Diagnostic) -> dict[str, str | int]:
@@ -151,7 +172,7 @@ def render(diagnostic: Diagnostic, source: Source | str) -> str:
         diagnostic: What to show.
         source: The text it points into.
     """
-    text = source if isinstance(source, str) else source.text
+    text = source if isinstance(source, str) else source.text_of(diagnostic.path)
     place = diagnostic.path
     if diagnostic.span.line:
         place += f":{diagnostic.span.line}:{diagnostic.span.column}"
@@ -165,30 +186,33 @@ def render(diagnostic: Diagnostic, source: Source | str) -> str:
 def _excerpt(diagnostic: Diagnostic, source: str) -> list[str]:
     """Give the source line and the line of carets, or nothing if the place is not in the text."""
     span = diagnostic.span
-    text = source.split("\n")
-    if not 1 <= span.line <= len(text):
+    starts = _line_starts(source)
+    if not 1 <= span.line <= len(starts):
         return []
-    cells = _cells(text[span.line - 1].rstrip("\r"))
-    start = min(span.column - 1, len(cells))
-    stop = span.end_column - 1 if span.end_line == span.line else len(cells)
-    stop = max(start + 1, min(stop, len(cells)))
-    cut_from = _first_shown(cells, start, stop)
-    shown = cells[cut_from : cut_from + _LONGEST_LINE]
+    begin = starts[span.line - 1]
+    end = starts[span.line] - 1 if span.line < len(starts) else len(source)
+    line = source[begin:end].rstrip("\r")
+    start = min(span.column - 1, len(line))
+    stop = span.end_column - 1 if span.end_line == span.line else len(line)
+    stop = max(start + 1, min(stop, len(line)))
+    cut_from = 0
+    if len(line) > _LONGEST_LINE and stop > _LONGEST_LINE:
+        cut_from = max(0, start - _LONGEST_LINE // 4)  # so that the span stays in sight
+    shown = _cells(line[cut_from : cut_from + _LONGEST_LINE])
     before = sum(width for _, width in shown[: start - cut_from])
     under = sum(width for _, width in shown[start - cut_from : stop - cut_from])
     opening = "…" if cut_from else ""
-    closing = "…" if cut_from + _LONGEST_LINE < len(cells) else ""
-    line = opening + "".join(glyph for glyph, _ in shown) + closing
+    closing = "…" if cut_from + _LONGEST_LINE < len(line) else ""
+    text = opening + "".join(glyph for glyph, _ in shown) + closing
     carets = " " * (len(opening) + before) + "^" * max(under, 1)
     label = f" {diagnostic.label}" if diagnostic.label else ""
-    return [f"{span.line:>5} | {line}".rstrip(), f"{'':>5} | {carets}{label}"]
+    return [f"{span.line:>5} | {text}".rstrip(), f"{'':>5} | {carets}{label}"]
 
 
-def _first_shown(cells: list[tuple[str, int]], start: int, stop: int) -> int:
-    """Choose where a long line is cut so that the span stays in sight."""
-    if len(cells) <= _LONGEST_LINE or stop <= _LONGEST_LINE:
-        return 0
-    return max(0, start - _LONGEST_LINE // 4)
+@functools.lru_cache(maxsize=8)
+def _line_starts(text: str) -> tuple[int, ...]:
+    """Give the offset of each line; kept, for the findings about one text come together."""
+    return (0, *(match.end() for match in re.finditer("\n", text)))
 
 
 def _cells(line: str) -> list[tuple[str, int]]:

@@ -10,9 +10,17 @@ import difflib
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
+from itertools import islice
 
-from icarus_lite.language.brackets import FORM_NAMES, Lines, first_word, innermost_open
+from icarus_lite.language.brackets import (
+    FORM_NAMES,
+    MODERN_FORMS,
+    Lines,
+    first_word,
+    innermost_open,
+)
 from icarus_lite.language.diagnostics import Diagnostic, Severity
+from icarus_lite.language.older import GONE_FIELDS, GONE_FORMS
 from icarus_lite.language.syntax import Span
 
 _FORMS = {name.upper().replace("-", "_"): name for name in FORM_NAMES}
@@ -28,8 +36,12 @@ _MODERN_FIELDS = {
     "UNTIL": ":until",
     "CHILD": ":child",
     "PARENT": ":parent",
+    "IS": ":is",
     "ROBOT": ":robot",
+    "AGENTS": ":agents",
     "GOAL": ":goal",
+    "RELEVANCE": ":relevance",
+    "PRIORITY": ":priority",
     "ACTION": ":action",
     "EXPECT": ":expect",
     "EXPECT_NOT": ":expect-not",
@@ -42,6 +54,7 @@ _OLDER_FIELDS = {
     "START": ":start",
     "REQUIRES": ":requires",
     "SUBGOALS": ":subgoals",
+    "ATTRIBUTES": ":attributes",
 }
 _FIELDS = {**_MODERN_FIELDS, **_OLDER_FIELDS, "PERCEPTS_FIELD": ":percepts"}
 _PHRASES = {
@@ -55,10 +68,13 @@ _PHRASES = {
     "TIMES": "`*`",
     "NOT": "`not`",
 }
+_LONGEST_WORD = 60
+_LONGEST_LIST = 20
 _VALUES = "a variable, a name, a number or a string"
 _WORD = re.compile(r'"[^"\\]*(?:\\[\s\S][^"\\]*)*"|[()\']|[^ \t\n\r\f\v()"\';]+')
 _LEGAL_WORD = re.compile(r'[()"\']|[?^:*]?[^ \t\n\r\f\v()"\';?:^*|#]+\Z|\*\Z')
-_LAST_WORD = re.compile(r"([^ \t\n\r\f\v()\"';]+)[ \t\n\r\f\v]*\Z")
+_BLANKS = " \t\n\r\f\v"
+_WORD_ENDS = re.compile(r"[ \t\n\r\f\v()\"';]")
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,19 +154,29 @@ def stands_inside(stumble: Stumble, text: str) -> int | None:
 
 def closest(word: str, candidates: Iterable[str]) -> str | None:
     """Give the candidate that the word was probably meant to be, or None."""
-    near = difflib.get_close_matches(word, list(candidates), n=1, cutoff=0.6)
+    if len(word) > _LONGEST_WORD:
+        return None
+    alike = [each for each in candidates if 3 * len(each) >= len(word) >= len(each) / 3]
+    near = difflib.get_close_matches(word, alike, n=1, cutoff=0.6)
     return near[0] if near else None
 
 
+def shortened(word: str) -> str:
+    """Give a word as it is shown in a message: nobody wants to read a thousand letters."""
+    return word if len(word) <= _LONGEST_WORD else f"{word[: _LONGEST_WORD - 1]}…"
+
+
 def listing(words: Iterable[str], last: str = "and") -> str:
-    """Write words as `a, b and c`."""
-    words = list(words)
+    """Write words as `a, b and c`; of more than twenty, the first ones."""
+    words = list(islice(words, _LONGEST_LIST + 1))
+    if len(words) > _LONGEST_LIST:
+        words, last = [*words[: _LONGEST_LIST - 1], "so on"], "and"
     return f" {last} ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)
 
 
 def _last_word(text: str) -> str:
-    match = _LAST_WORD.search(text)
-    return match[1] if match else ""
+    text = text.rstrip(_BLANKS)[-_LONGEST_WORD:]
+    return _WORD_ENDS.split(text)[-1]
 
 
 def _place(lines: Lines, offset: int, word: str) -> Span:
@@ -158,6 +184,7 @@ def _place(lines: Lines, offset: int, word: str) -> Span:
 
 
 def _quoted(word: str) -> str:
+    word = shortened(word)
     if word in ("(", ")"):
         return f'"{word}"'
     return word if word.startswith('"') else f"`{word}`"
@@ -171,16 +198,27 @@ def _outside(context: _Context) -> _Finding | None:
         if context.at_end:
             return "ICR006", "there is nothing to read", hint
         return "ICR009", f"{_quoted(context.word)} cannot stand here", hint
-    hint = f"a file is a sequence of forms: {listing(f'({name} …)' for name in FORM_NAMES[:8])}"
+    hint = f"a file is a sequence of forms: {listing(f'({name} …)' for name in MODERN_FORMS)}"
     if context.word.startswith((":", "(")):
         hint = f'is there a ")" too many before it? {hint}'
     return "ICR009", f"{_quoted(context.word)} stands outside of every form", hint
 
 
+def _gone(context: _Context) -> _Finding | None:
+    """Say what became of a construct of an older dialect."""
+    if context.word in GONE_FIELDS and context.accepts & _FIELDS.keys():
+        message = f"`{context.word}` is a field of older dialects that has no place here"
+        return "ICR037", message, GONE_FIELDS[context.word]
+    if context.word in GONE_FORMS and context.accepts & _FORMS.keys():
+        message = f"`{context.word}` is a form of older dialects that has no place here"
+        return "ICR037", message, GONE_FORMS[context.word]
+    return None
+
+
 def _unknown_form(context: _Context) -> _Finding | None:
     if not context.accepts & _FORMS.keys():
         return None
-    hint = f"the forms are {listing(FORM_NAMES[:8])}"
+    hint = f"the forms are {listing(MODERN_FORMS)}"
     if context.word == "(":
         hint = f'is there a ")" too many before it? {hint}'
     if context.word in ("(", ")"):
@@ -193,6 +231,8 @@ def _unknown_form(context: _Context) -> _Finding | None:
 
 def _legal_fields(accepts: frozenset[str]) -> list[str]:
     """List the fields that may stand here, by their modern names, in the grammar's order."""
+    if "ACTIONS" in accepts:
+        accepts -= {"ACTION"}  # in a skill it is an older name
     fields = [text for terminal, text in _MODERN_FIELDS.items() if terminal in accepts]
     is_test = "EXPECT" in accepts
     return [":percepts", *fields] if is_test else fields
@@ -236,6 +276,27 @@ def _illegal_word(context: _Context) -> _Finding | None:
         f"`{context.word}` is not a word of the language",
         'names hold none of ? : ^ * | # after their first character; a string "…" may hold any',
     )
+
+
+def _variable_first(context: _Context) -> _Finding | None:
+    wants_name = "SYMBOL" in context.accepts and "VARIABLE" not in context.accepts
+    if not wants_name or not context.word.startswith("?"):
+        return None
+    return (
+        "ICR009",
+        f"a pattern begins with a name, not with {_quoted(context.word)}",
+        f"write (object {shortened(context.word)} ^type plug), also for (?o is (object …)) of old",
+    )
+
+
+def _junction(context: _Context) -> _Finding | None:
+    # In :tests, `and` and `or` are functions, which the parser takes.
+    if context.head not in ("and", "or") or context.word != "(":
+        return None
+    hint = "all elements must hold anyway: write them one after another"
+    if context.head == "or":
+        hint = "alternatives are clauses with the same head: write one for each"
+    return "ICR009", f"there is no `{context.head}` of patterns", hint
 
 
 def _not(context: _Context) -> _Finding | None:
@@ -306,11 +367,14 @@ def _generic(context: _Context) -> _Finding | None:
 
 _FINDERS = (
     _outside,
+    _gone,
     _unknown_form,
     _unknown_field,
     _misplaced_field,
     _quote,
     _illegal_word,
+    _variable_first,
+    _junction,
     _not,
     _attribute_value,
     _late_argument,

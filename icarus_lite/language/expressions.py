@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
-from icarus_lite.language.explanations import closest
 from icarus_lite.language.functions import Function, Kind
 from icarus_lite.language.report import Report
 from icarus_lite.language.syntax import Bind, Call, Constant, Expression, Span, Variable
@@ -37,34 +36,47 @@ def check_expressions(
     binds: Sequence[Bind],
     functions: Mapping[str, Function],
     report: Report,
+    predicates: Collection[str] = (),
 ) -> None:
-    """Check the calls of one clause: each test must give a boolean, each bind a value."""
+    """Check the calls of one clause: each test must give a boolean, each bind a value.
+
+    Args:
+        tests: The clause's `:tests`.
+        binds: Its `:binds`.
+        functions: All functions there are.
+        report: Where findings go.
+        predicates: What is perceived or believed, to tell where a pattern belongs.
+    """
     for test in tests:
-        gives = _check_call(test, functions, report)
+        gives = _check_call(test, functions, report, predicates)
         if gives is Kind.NUMBER:
             message = f"`{test.function}` gives a number, so this is not a test"
             report.error(test.span, "ICR017", message, "compare it: (< (distance …) 0.05)")
     for bind in binds:
         if not isinstance(bind.expression, Call):
             continue
-        gives = _check_call(bind.expression, functions, report)
+        gives = _check_call(bind.expression, functions, report, predicates)
         if gives is Kind.BOOLEAN:
             name = bind.variable.name
             message = f"{name} would be true or false, but variables hold numbers and symbols"
             report.error(bind.expression.span, "ICR017", message, "move the test to :tests")
 
 
-def _check_call(call: Call, functions: Mapping[str, Function], report: Report) -> Kind | None:
+def _check_call(
+    call: Call, functions: Mapping[str, Function], report: Report, predicates: Collection[str]
+) -> Kind | None:
     """Check a call and its arguments; give the kind of its result, or None if it is unknown."""
     kinds = [
-        _check_call(argument, functions, report) if isinstance(argument, Call) else None
+        _check_call(argument, functions, report, predicates) if isinstance(argument, Call) else None
         for argument in call.args
     ]
     function = functions.get(call.function)
     if function is None:
-        meant = _OTHER_NAMES.get(call.function) or closest(call.function, functions)
+        meant = _OTHER_NAMES.get(call.function) or report.closest(call.function, functions)
         hint = "a predicate belongs in :elements; a Python function must be given when loading"
-        if meant:
+        if call.function in predicates:
+            hint = "it is perceived or believed: a pattern over it belongs in :elements"
+        elif meant:
             hint = f"did you mean `{meant}`? {hint}"
         report.error(_name_span(call), "ICR016", f"there is no function `{call.function}`", hint)
         return None

@@ -8,13 +8,13 @@ from icarus_lite.language.checker import check_domain
 from icarus_lite.language.diagnostics import (
     Diagnostic,
     DomainError,
-    Severity,
     has_errors,
     in_order,
 )
 from icarus_lite.language.functions import PythonFunctions
-from icarus_lite.language.reader import decode, parse_domain
-from icarus_lite.language.syntax import NOWHERE, Domain, Source
+from icarus_lite.language.reader import read_domain
+from icarus_lite.language.sources import read_source
+from icarus_lite.language.syntax import Domain, Source
 
 
 def load_domain(path: str | Path, *, functions: PythonFunctions | None = None) -> Domain:
@@ -41,29 +41,50 @@ def load_domain(path: str | Path, *, functions: PythonFunctions | None = None) -
 
 
 def diagnose_file(
-    path: str | Path, *, functions: PythonFunctions | None = None
+    path: str | Path, *, functions: PythonFunctions | None = None, thorough: bool = False
 ) -> tuple[Domain | None, Source, tuple[Diagnostic, ...]]:
     """Read a domain file and find everything there is to say about it, without raising.
+
+    Args:
+        path: The file.
+        functions: Python functions that its tests may call, by name.
+        thorough: Whether to tell of what nobody uses as well.
 
     Returns:
         The domain, or None if there are errors; the text, to render the diagnostics with; and the
         diagnostics in the order of the text.
     """
-    shown = str(path)
+    file = Path(path)
     try:
-        source = decode(Path(path).read_bytes(), shown)
-    except OSError as error:
-        return None, Source(shown, ""), (_unreadable(shown, error),)
+        source = read_source(file, str(path))
     except DomainError as error:
         return None, error.source, error.diagnostics
-    domain, diagnostics = parse_domain(source.text, shown)
+    return _diagnose(source, file.parent, functions, thorough=thorough)
+
+
+def diagnose_text(
+    text: str,
+    path: str | Path,
+    *,
+    functions: PythonFunctions | None = None,
+    thorough: bool = False,
+) -> tuple[Domain | None, Source, tuple[Diagnostic, ...]]:
+    """Do as `diagnose_file` does, with a text that is not saved yet.
+
+    Args:
+        text: The text, as an editor has it.
+        path: The file that it will be; its includes are read from there.
+        functions: Python functions that its tests may call, by name.
+        thorough: Whether to tell of what nobody uses as well.
+    """
+    return _diagnose(Source(str(path), text), Path(path).parent, functions, thorough=thorough)
+
+
+def _diagnose(
+    source: Source, folder: Path, functions: PythonFunctions | None, *, thorough: bool
+) -> tuple[Domain | None, Source, tuple[Diagnostic, ...]]:
+    domain, source, diagnostics = read_domain(source, folder)
     if domain is not None:
-        diagnostics = in_order((*diagnostics, *check_domain(domain, functions)))
+        checked = check_domain(domain, functions, thorough=thorough)
+        diagnostics = in_order((*diagnostics, *checked))
     return (None if has_errors(diagnostics) else domain), source, diagnostics
-
-
-def _unreadable(path: str, error: OSError) -> Diagnostic:
-    reason = (error.strerror or type(error).__name__).lower()
-    hint = "" if not isinstance(error, FileNotFoundError) else "check the name and the folder"
-    message = f"the file cannot be read: {reason}"
-    return Diagnostic(path, NOWHERE, Severity.ERROR, "ICR001", message, hint)

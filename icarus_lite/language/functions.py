@@ -335,6 +335,7 @@ def _shown(function: str, values: list[Value | bool]) -> str:
 
 def _failure(path: str, span: Span, message: str) -> InferenceError:
     place = f"{span.line}:{span.column}: " if span.line else ""
+    path = span.path or path
     if path:
         place = f"{path}:{place}" if place else f"{path}: "
     return InferenceError(place + message)

@@ -12,7 +12,8 @@ import re
 from importlib import resources
 from typing import Any, cast
 
-from lark import Lark, Token, Transformer
+from lark import Lark, TextSlice, Token, Transformer
+from lark.lexer import LexerState, LexerThread, LineCounter
 
 from icarus_lite.language.parts import (
     Clause,
@@ -23,6 +24,7 @@ from icarus_lite.language.parts import (
     FormItem,
     Group,
     MalformedTermError,
+    Problem,
     Word,
 )
 from icarus_lite.language.syntax import (
@@ -58,6 +60,32 @@ def parser() -> Lark:
         maybe_placeholders=False,
         propagate_positions=False,
     )
+
+
+def parse(text: str, start: int, stop: int, place: Span, rule: str) -> object:
+    """Parse a stretch of a text.
+
+    Args:
+        text: The text.
+        start: The offset at which the stretch begins.
+        stop: The offset behind its end.
+        place: The place of its first character, so that no line before it is counted again.
+        rule: The start symbol of the grammar.
+
+    Returns:
+        What the rule gives.
+
+    Raises:
+        UnexpectedInput: The text does not match the rule.
+        MalformedTermError: A number or string in it cannot be represented.
+    """
+    counter = LineCounter("\n")  # type: ignore[no-untyped-call]
+    counter.char_pos = start
+    counter.line, counter.column = place.line, place.column
+    counter.line_start_pos = start - place.column + 1
+    frontend = parser().parser
+    state = LexerState(TextSlice(text, start, stop), counter)
+    return frontend.parser.parse(LexerThread(frontend.lexer, state), rule)
 
 
 def token_span(token: Token) -> Span:
@@ -150,11 +178,18 @@ class _Parts(Transformer[Token, tuple[Form, ...]]):
 
     domain_form = percepts_form = concepts_form = skills_form = staticmethod(_form)
     attachments_form = task_form = goals_form = test_form = staticmethod(_form)
+    include_form = long_term_goal_form = break_form = problems_form = staticmethod(_form)
     atom = staticmethod(_atom)
 
     def percept_type(self, children: list[Any]) -> PerceptType:
-        names = tuple([str(marker)[1:] for marker in children[2:-1]])
-        return PerceptType(str(children[1]), names, _between(children[0], children[-1]))
+        supertype = str(children[3]) if children[2].type == "IS" else None
+        markers = children[2 if supertype is None else 4 : -1]
+        names = tuple([str(marker)[1:] for marker in markers])
+        span = _between(children[0], children[-1])
+        return PerceptType(str(children[1]), names, supertype, span)
+
+    def problem(self, children: list[Any]) -> Problem:
+        return Problem(tuple(children[1:-1]), _between(children[0], children[-1]))
 
     def clause(self, children: list[Any]) -> Clause:
         span = _between(children[0], children[-1])

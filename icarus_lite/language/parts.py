@@ -64,7 +64,15 @@ class Clause:
     span: Span
 
 
-FormItem: TypeAlias = PerceptType | Clause | Condition | Field
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """A conjunction of goals: an entry of the older form `create-problems`."""
+
+    conditions: tuple[Condition, ...]
+    span: Span
+
+
+FormItem: TypeAlias = PerceptType | Clause | Condition | Field | Problem
 
 
 @dataclass(frozen=True, slots=True)

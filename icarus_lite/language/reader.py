@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from icarus_lite.language.assembly import assemble
 from icarus_lite.language.brackets import MAX_DEPTH, Lines, Scan, Segment, begins_nameless, scan
 from icarus_lite.language.diagnostics import (
@@ -12,31 +14,56 @@ from icarus_lite.language.diagnostics import (
     in_order,
 )
 from icarus_lite.language.explanations import Stumble, explain, stands_inside
+from icarus_lite.language.includes import expand, includes
 from icarus_lite.language.parts import Form, MalformedTermError
+from icarus_lite.language.silencing import unsilenced
 from icarus_lite.language.syntax import NOWHERE, Domain, Source, Span
 
 _EMPTY_HINT = "a domain begins with (domain NAME) and has (concepts …) and (skills …)"
 
 
-def parse_domain(text: str, path: str = "<text>") -> tuple[Domain | None, tuple[Diagnostic, ...]]:
+def parse_domain(
+    text: str, path: str = "<text>", *, folder: Path | None = None
+) -> tuple[Domain | None, tuple[Diagnostic, ...]]:
     """Read the text of a domain. It is not checked: that is `check_domain`'s work.
 
     Args:
         text: The text of a domain file.
         path: What to call the file in messages.
+        folder: The folder of the file, from which it may include others; None if it is no file.
 
     Returns:
         The domain, or None if there is an error among the diagnostics, and the diagnostics in
         the order of the text. Every form is read, so that one mistake does not hide the others.
     """
-    source = Source(path, text)
-    forms, problems = _Reading(source).forms()
+    domain, _, diagnostics = read_domain(Source(path, text), folder)
+    return domain, diagnostics
+
+
+def read_domain(
+    source: Source, folder: Path | None
+) -> tuple[Domain | None, Source, tuple[Diagnostic, ...]]:
+    """Read a domain as `parse_domain` does, and give its text with those it includes as well."""
+    forms, problems = read_forms(source)
+    if includes(forms):
+        forms, source, unreadable = expand(forms, source, folder, read_forms)
+        problems = [*problems, *unreadable]
     if has_errors(problems):
-        return None, in_order(problems)
+        return None, source, in_order(problems)
     if not forms:
-        return None, (_empty(path, _EMPTY_HINT),)
+        return None, source, (_empty(source.path, _EMPTY_HINT),)
     domain, remarks = assemble(forms, source)
-    return (None if has_errors(remarks) else domain), in_order(remarks)
+    domain_or_none = None if has_errors(remarks) else domain
+    return domain_or_none, source, unsilenced(in_order(remarks), source)
+
+
+def read_forms(source: Source) -> tuple[tuple[Form, ...], list[Diagnostic]]:
+    """Read the top-level forms of one text; includes are left as they are.
+
+    Returns:
+        The forms, none if the text has errors; and the errors.
+    """
+    return _Reading(source).forms()
 
 
 def read_fragment(text: str, path: str, start: str) -> tuple[object, ...]:
@@ -54,31 +81,6 @@ def read_fragment(text: str, path: str, start: str) -> tuple[object, ...]:
         DomainError: The text does not match the rule, or is empty.
     """
     return _Reading(Source(path, text)).fragment(start)
-
-
-def decode(data: bytes, path: str) -> Source:
-    """Turn the bytes of a file into text; a byte order mark and Windows line ends are fine.
-
-    Raises:
-        DomainError: The bytes are not UTF-8; the message names the place of the first bad one.
-    """
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        before = data[: error.start].decode("utf-8", errors="replace")
-        line = before.count("\n") + 1
-        column = len(before) - (before.rfind("\n") + 1) + 1
-        shown = data.decode("utf-8", errors="replace")
-        found = Diagnostic(
-            path,
-            Span(line, column, line, column + 1),
-            Severity.ERROR,
-            "ICR001",
-            f"the byte 0x{data[error.start]:02x} is not UTF-8",
-            "save the file as UTF-8",
-        )
-        raise DomainError([found], Source(path, shown)) from None
-    return Source(path, text.replace("\r\n", "\n"))
 
 
 def _empty(path: str, hint: str) -> Diagnostic:
@@ -205,12 +207,11 @@ class _Reading:
         # Lark takes longer to import than everything else here, and not every caller parses.
         from lark import UnexpectedInput  # noqa: PLC0415
 
-        from icarus_lite.language.parsing import parser  # noqa: PLC0415
+        from icarus_lite.language.parsing import parse  # noqa: PLC0415
 
-        text = self._source.text
-        padded = self._padding(segment) + text[segment.start : segment.stop]
+        place = self._lines.span(segment.start, segment.start)
         try:
-            return parser().parse(padded, start=start)
+            return parse(self._source.text, segment.start, segment.stop, place, start)
         except UnexpectedInput as error:
             interactive = getattr(error, "interactive_parser", None)
             accepts = frozenset(interactive.accepts()) if interactive is not None else frozenset()
@@ -219,13 +220,6 @@ class _Reading:
                 return Stumble(segment.stop, accepts, segment.start, start, at_end=True)
             offset = self._lines.offset(error.line, error.column)
             return Stumble(offset, accepts, segment.start, start)
-
-    def _padding(self, segment: Segment) -> str:
-        """Give blanks that put the segment's first character on its line and column."""
-        if segment.start == 0:
-            return ""
-        place = self._lines.span(segment.start, segment.start)
-        return "\n" * (place.line - 1) + " " * (place.column - 1)
 
     def _explain(self, stumble: Stumble) -> None:
         found = explain(stumble, self._source.text, self._source.path, self._lines)

@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
 
 from icarus_lite.language.brackets import Lines
 from icarus_lite.language.diagnostics import Diagnostic, Severity
+from icarus_lite.language.explanations import closest
 from icarus_lite.language.syntax import Atom, Source, Span
+
+_MOST_SEARCHED = 5_000  # words: what half a second is enough for
+_OPENING = re.compile(r"\([ \t\n\r\f\v]*\*?")
+_WORD_ENDS = " \t\n\r\f\v()\"';"
 
 
 @dataclass(slots=True)
@@ -16,7 +22,8 @@ class Report:
 
     source: Source
     diagnostics: list[Diagnostic] = field(default_factory=list)
-    _lines: Lines | None = None
+    _lines: dict[str, Lines] = field(default_factory=dict)
+    _searched: int = 0
 
     def error(
         self, span: Span, code: str, message: str, hint: str = "", *, label: str = ""
@@ -34,27 +41,55 @@ class Report:
         """Add something that is worth knowing."""
         self._add(Severity.NOTE, span, code, message, hint, label)
 
+    def closest(self, word: str, candidates: Iterable[str]) -> str | None:
+        """Give the candidate that the word was probably meant to be, or None.
+
+        In a file with thousands of unknown words only the first ones are worth the search.
+        """
+        if self._searched > _MOST_SEARCHED:
+            return None
+        others = sorted({each for each in candidates if each != word})
+        self._searched += len(others)
+        return closest(word, others)
+
     def name_of(self, atom: Atom) -> Span:
         """Give the place of an atom's predicate."""
-        return self._find(atom.span, rf"\([\s]*\*?({re.escape(atom.predicate)})")
+        if not atom.span.line:
+            return atom.span
+        text, lines = self._text(atom.span)
+        match = _OPENING.match(text, lines.offset(atom.span.line, atom.span.column))
+        if match is None or not text.startswith(atom.predicate, match.end()):
+            return atom.span
+        return self._span(lines, match.end(), len(atom.predicate), atom.span)
 
     def attribute_of(self, atom: Atom, attribute: str) -> Span:
         """Give the place of an attribute's marker and name in an atom."""
-        return self._find(atom.span, rf"([\^*]{re.escape(attribute)})(?=[\s()\"';])")
+        if not atom.span.line:
+            return atom.span
+        text, lines = self._text(atom.span)
+        stop = lines.offset(atom.span.end_line, atom.span.end_column)
+        for marker in "^*":
+            word = marker + attribute
+            found = text.find(word, lines.offset(atom.span.line, atom.span.column), stop)
+            while found >= 0:
+                if text[found + len(word)] in _WORD_ENDS:
+                    return self._span(lines, found, len(word), atom.span)
+                found = text.find(word, found + 1, stop)
+        return atom.span
 
-    def _find(self, span: Span, pattern: str) -> Span:
-        """Give the place of the first group of a pattern inside a span, or else the span."""
-        if not span.line:
-            return span
-        if self._lines is None:
-            self._lines = Lines(self.source.text)
-        start = self._lines.offset(span.line, span.column)
-        stop = self._lines.offset(span.end_line, span.end_column)
-        match = re.compile(pattern).search(self.source.text, start, stop)
-        return self._lines.span(match.start(1), match.end(1)) if match else span
+    def _text(self, span: Span) -> tuple[str, Lines]:
+        """Give the text in which a span lies, and its lines."""
+        text = self.source.text_of(span.path)
+        if span.path not in self._lines:
+            self._lines[span.path] = Lines(text)
+        return text, self._lines[span.path]
+
+    def _span(self, lines: Lines, offset: int, length: int, inside: Span) -> Span:
+        return replace(lines.span(offset, offset + length), path=inside.path)
 
     def _add(
         self, severity: Severity, span: Span, code: str, message: str, hint: str, label: str
     ) -> None:
-        found = Diagnostic(self.source.path, span, severity, code, message, hint, label)
+        path = span.path or self.source.path
+        found = Diagnostic(path, span, severity, code, message, hint, label)
         self.diagnostics.append(found)

@@ -7,12 +7,15 @@ negation; then the rules have no least model to agree on (Apt, Blair and Walker 
 
 from __future__ import annotations
 
-from collections import deque
+from collections import Counter, deque
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from icarus_lite.errors import IcarusError
 from icarus_lite.language.syntax import ConceptClause, Condition
+
+_LONGEST_PATH = 12
+_MOST_CYCLES = 10
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +33,10 @@ class NegationCycle:
     path: tuple[str, ...]
 
     def __str__(self) -> str:
-        return f"{self.clause.head.predicate} -> not {' -> '.join(self.path)}"
+        path = self.path
+        if len(path) > _LONGEST_PATH:
+            path = (*path[: _LONGEST_PATH // 2], "…", *path[-_LONGEST_PATH // 2 :])
+        return f"{self.clause.head.predicate} -> not {' -> '.join(path)}"
 
 
 class NotStratifiedError(IcarusError, ValueError):
@@ -57,7 +63,10 @@ def strata(clauses: Sequence[ConceptClause]) -> tuple[tuple[str, ...], ...]:
 
 
 def negation_cycles(clauses: Sequence[ConceptClause]) -> tuple[NegationCycle, ...]:
-    """Find every negated literal through which a concept depends on its own negation."""
+    """Find the negated literals through which a concept depends on its own negation.
+
+    Of concepts that all depend on one another, ten such literals are enough to start with.
+    """
     dependencies = _dependencies(clauses)
     group_of = {
         predicate: number
@@ -65,11 +74,16 @@ def negation_cycles(clauses: Sequence[ConceptClause]) -> tuple[NegationCycle, ..
         for predicate in group
     }
     cycles: list[NegationCycle] = []
+    found: Counter[int] = Counter()
     for clause in clauses:
         head = clause.head.predicate
         for condition in clause.elements:
             used = condition.atom.predicate
-            if condition.negated and group_of.get(used) == group_of[head]:
+            group = group_of[head]
+            if not condition.negated or group_of.get(used) != group:
+                continue
+            found[group] += 1
+            if found[group] <= _MOST_CYCLES:
                 path = _shortest_path(dependencies, used, head)
                 cycles.append(NegationCycle(clause, condition, path))
     return tuple(cycles)
@@ -123,9 +137,9 @@ def _groups(dependencies: Mapping[str, Iterable[str]]) -> tuple[tuple[str, ...],
                     caller = work[-1][0]
                     lowest[caller] = min(lowest[caller], lowest[predicate])
                 if lowest[predicate] == index[predicate]:
-                    start = open_predicates.index(predicate)
-                    group = open_predicates[start:]
-                    del open_predicates[start:]
+                    group = [open_predicates.pop()]
+                    while group[-1] != predicate:
+                        group.append(open_predicates.pop())
                     is_open.difference_update(group)
                     groups.append(tuple(sorted(group, key=position.__getitem__)))
             elif used not in index:

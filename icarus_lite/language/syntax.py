@@ -13,20 +13,49 @@ from icarus_lite.symbols import Value, format_value
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """The text a tree was read from. `path` is shown in messages."""
+    """The text a tree was read from.
+
+    Args:
+        path: The file, as shown in messages.
+        text: Its text.
+        included: The files it includes, directly or through others, in the order of the text.
+    """
 
     path: str
     text: str
+    included: tuple[Source, ...] = ()
+
+    def text_of(self, path: str) -> str:
+        """Give the text of this file, or of the included file with that path."""
+        for source in self.included:
+            if source.path == path:
+                return source.text
+        return self.text
 
 
 @dataclass(frozen=True, slots=True)
 class Span:
-    """A stretch of source text; lines and columns count from 1, the end column is exclusive."""
+    """A stretch of source text; lines and columns count from 1, the end column is exclusive.
+
+    `path` names the file where that is an included one; it is empty for the domain's own file.
+    """
 
     line: int
     column: int
     end_line: int
     end_column: int
+    path: str = field(default="", compare=False)
+
+    @property
+    def place(self) -> str:
+        """Where it begins: `3:14`, or `parts.icr:3:14` in an included file."""
+        place = f"{self.line}:{self.column}"
+        return f"{self.path}:{place}" if self.path else place
+
+    @property
+    def in_line(self) -> str:
+        """The line in which it begins: `line 3`, or `line 3 of parts.icr` in an included file."""
+        return f"line {self.line} of {self.path}" if self.path else f"line {self.line}"
 
 
 NOWHERE = Span(0, 0, 0, 0)
@@ -118,10 +147,15 @@ class Bind:
 
 @dataclass(frozen=True, slots=True)
 class PerceptType:
-    """A declared percept type and its attribute names, without markers."""
+    """A declared percept type and its attribute names, without markers.
+
+    A subtype, `(part :is object ^grip)`, has the attributes of its supertype besides its own, and
+    its percepts match the patterns of the supertype.
+    """
 
     name: str
     attributes: tuple[str, ...]
+    supertype: str | None = None
     span: Span = field(default=NOWHERE, compare=False)
 
 
@@ -175,12 +209,44 @@ class AttachmentRule:
 
 @dataclass(frozen=True, slots=True)
 class Task:
-    """A named goal for a robot: `(task 1.1 "title" :robot ur5 :goal (…))`."""
+    """A named goal for a robot: `(task 1.1 "title" :robot ur5 :goal (…))`.
+
+    `agents` are the others who work on it, such as `human`. `init` are ground facts that are
+    given at the start (`:init`): percepts, attachments, and what no camera sees.
+    """
 
     name: str
     title: str
     robot: str | None
     goals: tuple[Condition, ...]
+    agents: tuple[str, ...] = ()
+    init: tuple[Atom, ...] = ()
+    span: Span = field(default=NOWHERE, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class LongTermGoal:
+    """A goal pursued whenever it is relevant: `(long-term-goal tidy :goal (…) :relevance (…))`.
+
+    Args:
+        name: What it is called.
+        goals: What is to hold.
+        relevance: When it is worth pursuing; always if empty.
+        priority: The higher goes first among those that are relevant.
+    """
+
+    name: str
+    goals: tuple[Condition, ...]
+    relevance: tuple[Condition, ...] = ()
+    priority: float = 0.0
+    span: Span = field(default=NOWHERE, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Breakpoint:
+    """A belief at which to stop: `(break (attached ?obj case))`."""
+
+    condition: Condition
     span: Span = field(default=NOWHERE, compare=False)
 
 
@@ -242,4 +308,6 @@ class Domain:
     tasks: tuple[Task, ...] = ()
     goals: tuple[Condition, ...] = ()
     tests: tuple[DomainTest, ...] = ()
+    long_term_goals: tuple[LongTermGoal, ...] = ()
+    breakpoints: tuple[Breakpoint, ...] = ()
     source: Source = field(default=Source("<text>", ""), compare=False)

@@ -6,6 +6,7 @@ is none". A skill's head binds as well: its arguments come from the caller.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
@@ -16,6 +17,7 @@ from icarus_lite.language.syntax import (
     Call,
     ConceptClause,
     Condition,
+    Constant,
     SkillClause,
     Variable,
 )
@@ -78,19 +80,39 @@ class _Scope:
     bound: set[str]
     conditions: Iterable[Condition]
     report: Report
+    _denied: set[str] | None = None
+    _symbols: set[str] | None = None
 
     def require(self, variables: Iterable[Variable], place: str) -> None:
         """Report each variable that is not bound."""
         for variable in variables:
             if variable.name in self.bound:
                 continue
-            inside_not = any(
-                c.negated and variable.name in c.atom.variables for c in self.conditions
-            )
+            if self._denied is None:
+                negated = [c.atom for c in self.conditions if c.negated]
+                self._denied = {name for atom in negated for name in atom.variables}
+            inside_not = variable.name in self._denied
             label = "elsewhere it occurs only inside `not`" if inside_not else ""
             message = f"{variable} in {place} of `{self.name}` is never bound"
-            hint = "bind it in a positive pattern of :elements"
+            hint = self._advice(variable.name)
             self.report.error(variable.span, "ICR012", message, hint, label=label)
+
+    def _advice(self, name: str) -> str:
+        """Say what to do about an unbound variable; mostly it is one of a few slips."""
+        if name.endswith(","):
+            return "the comma belongs to the name here: arguments are separated by blanks"
+        if self._symbols is None:
+            self._symbols = {
+                str(term.value)
+                for condition in self.conditions
+                for term in condition.atom.args
+                if isinstance(term, Constant)
+            }
+        if name[1:] in self._symbols:
+            return f"`{name[1:]}` in :elements is a symbol; write {name} for the variable"
+        meant = self.report.closest(name, self.bound)
+        hint = "bind it in a positive pattern of :elements"
+        return f"did you mean {meant}? otherwise {hint}" if meant else hint
 
 
 def _variables(atom: Atom) -> Iterator[Variable]:
@@ -155,10 +177,10 @@ def _check_loners(
     negative: list[Variable] = []
     for condition in conditions:
         (negative if condition.negated else positive).extend(_variables(condition.atom))
-    names = [variable.name for variable in (*positive, *negative)]
+    names = Counter(variable.name for variable in (*positive, *negative))
     explained = {*head.variables, *(variable.name for variable in others)}
     for variable in positive:
-        lonely = names.count(variable.name) == 1 and variable.name not in explained
+        lonely = names[variable.name] == 1 and variable.name not in explained
         if lonely and not variable.name.startswith(_ONCE_IS_FINE):
             hint = "is it misspelt? name it ?_ if any value will do"
             report.warning(variable.span, "ICR029", f"{variable} occurs only once", hint)

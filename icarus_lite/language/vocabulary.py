@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
+from icarus_lite.language.percept_types import inherited_attributes
 from icarus_lite.language.syntax import NOWHERE, Atom, Domain, Span
 
 ATTACHED = "attached"
@@ -18,6 +19,7 @@ class Origin(StrEnum):
     PERCEPT = "percept"
     CONCEPT = "concept"
     EFFECT = "effect"
+    GIVEN = "given"
     ATTACHMENT = "attachment"
 
 
@@ -71,8 +73,9 @@ def vocabulary(domain: Domain) -> Vocabulary:
 
 
 def _definitions(domain: Domain) -> Iterable[Definition]:
+    attributes = inherited_attributes(domain.percepts)
     for percept in domain.percepts:
-        names = frozenset(percept.attributes)
+        names = frozenset(attributes[percept.name])
         yield Definition(percept.name, Origin.PERCEPT, 1, names, percept.span)
     for concept in domain.concepts:
         names = frozenset(name for name, _ in concept.head.attributes)
@@ -82,6 +85,12 @@ def _definitions(domain: Domain) -> Iterable[Definition]:
             if not effect.negated and effect.atom.predicate != ATTACHED:
                 names = frozenset(name for name, _ in effect.atom.attributes)
                 yield _definition(effect.atom, Origin.EFFECT, names)
+    perceived = {percept.name for percept in domain.percepts}
+    for task in domain.tasks:
+        for fact in task.init:
+            if fact.predicate not in perceived and fact.predicate != ATTACHED:
+                names = frozenset(name for name, _ in fact.attributes)
+                yield _definition(fact, Origin.GIVEN, names)
     yield Definition(ATTACHED, Origin.ATTACHMENT, 2, frozenset(), NOWHERE)
 
 

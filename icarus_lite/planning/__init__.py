@@ -1,11 +1,13 @@
 """Planning: from beliefs and goals to the next skill."""
 
+from icarus_lite.planning.candidates import Candidate, candidates
 from icarus_lite.planning.relevance import Relevance, can_change, relevance
 from icarus_lite.planning.search import DEFAULT_LIMIT, NoPlan, Plan, find_plan
 from icarus_lite.planning.situation import Imagination, PlanStep, Situation, holds
 
 __all__ = [
     "DEFAULT_LIMIT",
+    "Candidate",
     "Imagination",
     "NoPlan",
     "Plan",
@@ -13,6 +15,7 @@ __all__ = [
     "Relevance",
     "Situation",
     "can_change",
+    "candidates",
     "find_plan",
     "holds",
     "relevance",

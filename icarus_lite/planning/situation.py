@@ -17,7 +17,7 @@ from icarus_lite.inference import (
     advance,
     change_of,
     ground,
-    percept_fact,
+    percept_facts,
 )
 from icarus_lite.language.syntax import Condition, Domain, SkillClause
 from icarus_lite.symbols import Action, Belief, Value
@@ -80,7 +80,7 @@ class Imagination:
         self.evaluator = evaluator or Evaluator()
         self._domain = domain
         self._closure = closure
-        self._percepts = tuple(percept_fact(percept) for percept in state.percepts)
+        self._percepts = tuple(percept_facts(state.percepts, state.lineages))
         self._matchers: dict[int, Matcher] = {}
         self.start = Situation(frozenset(memory.asserted), state.hierarchy)
 

@@ -28,7 +28,7 @@ def header(domain: Domain, goals: Sequence[object], **extra: object) -> dict[str
         goals: The goals of the agent.
         extra: Whatever the caller wants recorded: task, robot, seed, configuration.
     """
-    text = domain.source.text
+    texts = [domain.source.text, *(source.text for source in domain.source.included)]
     return {
         "format": FORMAT,
         "version": VERSION,
@@ -36,8 +36,11 @@ def header(domain: Domain, goals: Sequence[object], **extra: object) -> dict[str
         "domain": {
             "name": domain.name,
             "path": domain.source.path,
-            "sha256": hashlib.sha256(text.encode()).hexdigest(),
-            "text": text,
+            "sha256": hashlib.sha256("\0".join(texts).encode()).hexdigest(),
+            "text": domain.source.text,
+            "included": [
+                {"path": source.path, "text": source.text} for source in domain.source.included
+            ],
         },
         "goals": [str(goal) for goal in goals],
         **extra,
@@ -71,6 +74,10 @@ def cycle_record(
             "commands": [str(command) for command in decision.commands],
             "reason": decision.reason,
         },
+        "candidates": [
+            {"skill": c.skill, "chosen": c.chosen, "why_not": c.why_not}
+            for c in decision.candidates
+        ],
         "notes": list(decision.state.notes),
         **extra,
     }

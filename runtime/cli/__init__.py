@@ -12,7 +12,17 @@ from typing import NoReturn
 import typer
 
 from icarus_lite import IcarusError
-from runtime.cli import checking, inferring, running  # noqa: F401 - each adds its commands
+from runtime.cli import (  # noqa: F401 - each adds its commands
+    checking,
+    editing,
+    formatting,
+    inferring,
+    pddl,
+    planning,
+    running,
+    testing,
+    tracking,
+)
 from runtime.cli.app import BAD_INPUT, HOLDS, app
 from runtime.errors import RuntimeFault
 

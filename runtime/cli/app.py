@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import sys
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Final
+from typing import TYPE_CHECKING, Annotated, Final, TextIO
 
 import typer
 
 from icarus_lite import __version__
+from runtime.errors import UsageError
 
 if TYPE_CHECKING:
     from icarus_lite.language.syntax import Domain
@@ -41,6 +44,20 @@ def load(file: Path) -> Domain:
     from icarus_lite.language import load_domain
 
     return load_domain(file)
+
+
+def sink(path: Path | None) -> AbstractContextManager[TextIO]:
+    """Open an output file, or standard output, which stays open afterwards.
+
+    Raises:
+        UsageError: the file cannot be written.
+    """
+    if path is None:
+        return nullcontext(sys.stdout)
+    try:
+        return path.open("w", encoding="utf-8")
+    except OSError as error:
+        raise UsageError(f"{path}: cannot be written: {error.strerror}") from error
 
 
 def _show_version(value: bool) -> None:  # noqa: FBT001 - the signature typer calls

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -12,6 +12,10 @@ from runtime.cli.app import BAD_INPUT, HOLDS, DomainFiles, Json, app
 if TYPE_CHECKING:
     from icarus_lite.language import Diagnostic
 
+Verbose = Annotated[
+    bool, typer.Option("--verbose", "-v", help="Tell of names that nothing uses as well.")
+]
+
 
 @app.command(
     epilog="Example: icarus check domains/gearbox.icr",
@@ -19,14 +23,18 @@ if TYPE_CHECKING:
 def check(
     files: DomainFiles,
     *,
+    verbose: Verbose = False,
     as_json: Json = False,
 ) -> None:
-    """Parse and check domain files; tell every problem with file, line, column and a hint."""
+    """Parse and check domain files; tell every problem with file, line, column and a hint.
+
+    Warnings and notes are silenced by a comment in their line: `; noqa: ICR029`.
+    """
     from icarus_lite.language import diagnose_file, render, to_json
 
     found: list[Diagnostic] = []
     for file in files:
-        _, source, diagnostics = diagnose_file(file)
+        _, source, diagnostics = diagnose_file(file, thorough=verbose)
         found.extend(diagnostics)
         if not as_json:
             for diagnostic in diagnostics:

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import sys
-from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
-from typing import Annotated, TextIO
+from typing import Annotated
 
 import typer
 
 from icarus_lite import FrameError, InferenceError
-from runtime.cli.app import DomainFile, app, load
+from runtime.cli.app import DomainFile, app, load, sink
 
 
 @app.command(
@@ -29,7 +27,7 @@ def infer(
 
     engine = InferenceEngine(load(file))
     memory = Memory()
-    with _sink(out) as sink:
+    with sink(out) as lines:
         for frame in read_frames(frames):
             try:
                 memory = engine.step(memory, frame.percepts, frame.outcomes)
@@ -39,15 +37,5 @@ def infer(
                 raise InferenceError(f"{frames}:{frame.line}: {error}") from None
             for note in memory.state.notes:
                 typer.echo(f"{frames}:{frame.line}: {note}", err=True)
-            sink.write(beliefs_line(frame.cycle, memory.state.beliefs) + "\n")
-            sink.flush()
-
-
-def _sink(path: Path | None) -> AbstractContextManager[TextIO]:
-    """Open the output; standard output stays open afterwards."""
-    if path is None:
-        return nullcontext(sys.stdout)
-    try:
-        return path.open("w", encoding="utf-8")
-    except OSError as error:
-        raise FrameError(f"cannot be written: {error.strerror}", path=str(path)) from error
+            lines.write(beliefs_line(frame.cycle, memory.state.beliefs) + "\n")
+            lines.flush()

@@ -17,7 +17,7 @@ import pytest
 from icarus_lite import __version__
 from runtime.cli import main
 
-COMMANDS = ("check", "infer", "run", "controller")
+COMMANDS = ("check", "controller", "fmt", "infer", "lsp", "pddl", "plan", "run", "test", "track")
 DRY = "192.0.2.1"  # an address for documentation: nobody is ever there
 FRAMES = [
     {
@@ -87,7 +87,7 @@ def test_every_command_has_help_with_an_example(command: str) -> None:
 
 def test_help_lists_every_command() -> None:
     listed = re.findall(r"^  ([a-z][a-z-]+)  ", icarus("--help").stdout, re.MULTILINE)
-    assert tuple(listed) == COMMANDS
+    assert sorted(listed) == sorted(COMMANDS)
 
 
 @pytest.mark.parametrize("arguments", [["fly"], ["check"], ["run", "x.icr", "--seed", "-1"]])
@@ -275,3 +275,41 @@ def test_a_busy_port_is_told_in_one_sentence() -> None:
     assert done.returncode == 2
     assert "127.0.7.7:30004" in done.stderr
     assert len(done.stderr.strip().splitlines()) == 1
+
+
+class TestTrack:
+    def test_anchors_of_each_frame(self, root: Path, tmp_path: Path) -> None:
+        seen = tmp_path / "seen.jsonl"
+        detection = {"type": "cone", "box": [10, 10, 30, 30], "score": 0.9}
+        rows = [{"frame": n, "detections": [detection], "actions": []} for n in range(2)]
+        seen.write_text("".join(json.dumps(row) + "\n" for row in rows))
+        domain = root / "domains" / "cater.icr"
+        done = icarus("track", "--detections", seen, "--domain", domain, "--tau", "3000")
+        assert (done.returncode, done.stderr) == (0, "")
+        first, second = map(json.loads, done.stdout.splitlines())
+        assert first["frame"] == 0
+        assert second["anchors"] == [
+            {
+                "name": "cone-1",
+                "type": "cone",
+                "box": [10.0, 10.0, 30.0, 30.0],
+                "status": "visible",
+                "parent": None,
+                "confidence": 0.2,
+            }
+        ]
+
+    @pytest.mark.parametrize(
+        ("line", "said"), [('{"frame": 0}', "detections"), ("not json", "seen.jsonl:1")]
+    )
+    def test_a_malformed_line_is_status_2(self, tmp_path: Path, line: str, said: str) -> None:
+        seen = tmp_path / "seen.jsonl"
+        seen.write_text(line + "\n")
+        done = icarus("track", "--detections", seen)
+        assert done.returncode == 2
+        assert said in done.stderr
+
+    def test_a_tau_that_makes_no_sense(self, tmp_path: Path) -> None:
+        done = icarus("track", "--detections", tmp_path / "x", "--tau", "-1")
+        assert done.returncode == 2
+        assert "tau" in done.stderr

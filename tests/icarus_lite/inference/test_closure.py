@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from icarus_lite import Belief, InferenceError
-from icarus_lite.inference import Closure, Derivation, FactStore
+from icarus_lite.inference import Closure, Derivation, FactStore, Matcher, ground
 from icarus_lite.language.reader import parse_domain
-from icarus_lite.language.stratification import NotStratifiedError
+from icarus_lite.language.stratification import NotStratifiedError, strata
 from icarus_lite.language.syntax import Atom, ConceptClause, Condition, Constant, Variable
 
 _REFERENCE = Path(__file__).parents[2] / "reference" / "naive_inference.py"
@@ -201,3 +201,69 @@ def test_first_supports_never_run_in_a_circle(
 
     for belief in found:
         height(belief, frozenset())
+
+
+def by_naive_passes(
+    clauses: list[ConceptClause], store: FactStore
+) -> dict[Belief, list[tuple[int, tuple[Belief, ...]]]]:
+    """Ask every clause of a stratum over all facts, in turn, until nothing new comes out."""
+    found: dict[Belief, list[tuple[int, tuple[Belief, ...]]]] = {}
+    for layer in strata(clauses):
+        fresh = True
+        while fresh:
+            fresh = False
+            for number, clause in enumerate(clauses):
+                if clause.head.predicate not in layer:
+                    continue
+                for match in tuple(Matcher(clause.elements).matches(store)):
+                    belief = ground(clause.head, match.bindings)
+                    support = (number, match.matched)
+                    if support not in found.setdefault(belief, []):
+                        found[belief].append(support)
+                    fresh |= store.add(belief)
+    return found
+
+
+def assert_as_by_naive_passes(clauses: list[ConceptClause], given_facts: list[Belief]) -> None:
+    store, naive_store = FactStore(given_facts), FactStore(given_facts)
+    numbers = {id(clause): number for number, clause in enumerate(clauses)}
+    found = [
+        (belief, [(numbers[id(s.clause)], s.matched) for s in supports])
+        for belief, supports in Closure(clauses).derive(store).items()
+    ]
+    assert found == list(by_naive_passes(clauses, naive_store).items())
+    assert list(store) == list(naive_store)
+
+
+@given(programs(), _FACTS)
+def test_beliefs_and_derivations_come_in_the_order_of_naive_passes(
+    clauses: list[ConceptClause], facts: set[tuple]
+) -> None:
+    assert_as_by_naive_passes(clauses, [Belief(f[0], f[1:]) for f in sorted(facts, key=str)])
+
+
+@given(st.lists(st.tuples(st.integers(1, 5), st.integers(1, 5)), unique=True, max_size=12))
+def test_the_same_where_a_clause_joins_its_own_concept_with_itself(
+    edges: list[tuple[int, int]],
+) -> None:
+    text = """((odd ?x ?y) :elements ((edge ?x ?y)))
+              ((even ?x ?z) :elements ((odd ?x ?y) (odd ?y ?z)))
+              ((odd ?x ?w) :elements ((odd ?x ?y) (even ?y ?z) (odd ?z ?w)))"""
+    assert_as_by_naive_passes(list(concepts(text)), [fact("edge", *pair) for pair in edges])
+
+
+def test_a_value_is_written_as_in_the_first_condition_that_binds_it() -> None:
+    text = """((p ?x) :elements ((e ?x) (p ?x))) ((p ?x) :elements ((start ?x)))"""
+    found = Closure(concepts(text)).derive(FactStore([fact("e", 2), fact("start", 2.0)]))
+    recursive = found[fact("p", 2)][1]
+    assert isinstance(recursive, Derivation)
+    assert repr(recursive.bindings["?x"]) == "2"
+
+
+def test_a_test_is_not_asked_about_what_an_earlier_condition_rules_out() -> None:
+    text = """((reached ?x) :elements ((start ?x)))
+              ((reached ?y) :elements ((numbered ?x) (reached ?x) (next ?x ?y))
+                            :tests ((> ?x 0)))"""
+    facts = [fact("start", "a"), fact("start", 1), fact("numbered", 1)]
+    facts += [fact("next", 1, 2), fact("next", "a", 3)]
+    assert derive(text, *facts) == {"(reached a)", "(reached 1)", "(reached 2)"}

@@ -144,3 +144,23 @@ def test_a_step_leaves_the_memory_it_was_given_alone() -> None:
     before = (first.state.beliefs, dict(first.asserted))
     engine.step(first, ALL, [outcome("place-down", "h1", "o1")])
     assert (first.state.beliefs, dict(first.asserted)) == before
+
+
+def test_each_outcome_is_judged_by_what_the_one_before_it_has_left() -> None:
+    text = """(percepts (hand) (object))
+    (concepts ((free ?h) :elements ((hand ?h) (not (holding ?h ?any)))))
+    (skills
+      ((place-down ?h ?o) :elements ((holding ?h ?o)) :actions ((*place ?h ?o))
+                          :effects ((not (holding ?h ?o))))
+      ((pick-up ?h ?o) :elements ((free ?h) (object ?o)) :actions ((*grasp ?h ?o))
+                       :effects ((holding ?h ?o)))
+      ((take-out ?o ?from) :elements ((free ?h) (object ?o) (object ?from))
+                           :actions ((*take-out ?h ?o ?from)) :effects ((holding ?h ?o))))"""
+    domain, problems = parse_domain(text)
+    assert domain is not None, problems
+    engine, memory = InferenceEngine(domain), Memory()
+    memory = engine.step(memory, ALL)
+    memory = engine.step(memory, ALL, [outcome("pick-up", "h1", "c1")])
+    both = [outcome("place-down", "h1", "c1"), outcome("take-out", "o1", "c1")]
+    assert [str(b) for b in engine.step(memory, ALL, both).state.beliefs] == ["(holding h1 o1)"]
+    assert [str(b) for b in engine.step(memory, ALL, both[::-1]).state.beliefs] == ["(free h1)"]

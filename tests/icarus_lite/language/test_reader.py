@@ -17,7 +17,7 @@ from icarus_lite.language import (
     render,
 )
 from icarus_lite.language.brackets import FORM_NAMES, Lines
-from icarus_lite.language.reader import decode
+from icarus_lite.language.sources import decode
 from icarus_lite.language.syntax import (
     Atom,
     Call,

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from icarus_lite import Action, Agent, Outcome, Percept, TraceError
+from icarus_lite import Action, Agent, Outcome, Percept, TraceError, load_domain
 from icarus_lite.language.reader import parse_domain
 from icarus_lite.trace import TraceWriter, cycle_record, header, inputs_of, read_trace
 
@@ -59,6 +59,16 @@ def test_what_was_written_is_read(tmp_path: Path) -> None:
     assert second["removed"] == ["(dark l1)"]
     assert second["goals"] == [{"goal": "(lit l1)", "satisfied": True}]
     assert trace.warning == ""
+
+
+def test_the_header_holds_included_files_too(tmp_path: Path) -> None:
+    (tmp_path / "main.icr").write_text('(include "lamps.icr")\n(goals (dark l1))\n')
+    (tmp_path / "lamps.icr").write_text(
+        "(percepts (lamp ^lit))\n(concepts ((dark ?l) :elements ((lamp ?l ^lit no))))\n"
+    )
+    told = header(load_domain(tmp_path / "main.icr"), [])["domain"]
+    assert [Path(row["path"]).name for row in told["included"]] == ["lamps.icr"]
+    assert "(dark ?l)" in told["included"][0]["text"]
 
 
 def test_each_cycle_is_on_disk_before_the_next(tmp_path: Path) -> None:

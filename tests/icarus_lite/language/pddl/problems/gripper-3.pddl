@@ -1,0 +1,6 @@
+(define (problem three-balls)
+  (:domain gripper)
+  (:objects here there b1 b2 b3 left right)
+  (:init (room here) (room there) (ball b1) (ball b2) (ball b3) (gripper left) (gripper right)
+         (robot-in here) (free left) (free right) (in b1 here) (in b2 here) (in b3 here))
+  (:goal (and (in b1 there) (in b2 there) (in b3 there))))

@@ -1,0 +1,6 @@
+(define (problem two-people)
+  (:domain lift)
+  (:objects first second - floor ann - person bob - visitor)
+  (:init (above first ground) (above second ground) (above second first) (lift-at second)
+         (waits ann first) (wants ann ground) (waits bob second) (wants bob first))
+  (:goal (and (served ann) (served bob) (lift-at ground))))

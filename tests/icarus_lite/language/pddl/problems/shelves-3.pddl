@@ -1,0 +1,5 @@
+(define (problem three-crates)
+  (:domain shelves)
+  (:objects a b c - crate left middle right - spot)
+  (:init (rests c left) (on b c) (on a b))
+  (:goal (and (above c a) (not (fixed a)))))

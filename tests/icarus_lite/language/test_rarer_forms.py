@@ -1,0 +1,75 @@
+"""Forms and fields that few domains have: percept subtypes, agents, long-term goals, breaks."""
+
+from __future__ import annotations
+
+from icarus_lite.language import Severity, check_domain, parse_atom, parse_conditions, parse_domain
+from icarus_lite.language.syntax import Breakpoint, LongTermGoal, Task
+
+
+def read(text):
+    domain, found = parse_domain(text, "d.icr")
+    assert domain is not None, found
+    return domain, [each.code for each in found]
+
+
+def test_long_term_goals():
+    text = """(long-term-goal tidy :goal ((clean ?t) (not (wet ?t))) :relevance (table ?t)
+              :priority 2.5)
+              (long-term-goal rest :goal (asleep me))"""
+    domain, codes = read(text)
+    tidy, rest = domain.long_term_goals
+    assert tidy == LongTermGoal(
+        "tidy",
+        parse_conditions("((clean ?t) (not (wet ?t)))"),
+        parse_conditions("(table ?t)"),
+        2.5,
+    )
+    assert (rest.relevance, rest.priority) == ((), 0.0)
+    assert codes == ["ICR038", "ICR038"]
+
+
+def test_breakpoints_are_beliefs_or_skills():
+    text = """(percepts (hand ^x))
+    (skills ((go ?h) :elements ((hand ?h)) :actions ((*go ?h)) :effects ((at ?h))))
+    (break (at ?h) (not (hand ?any)) (go h1))"""
+    domain, codes = read(text)
+    assert domain.breakpoints == tuple(
+        Breakpoint(each) for each in parse_conditions("((at ?h) (not (hand ?any)) (go h1))")
+    )
+    assert codes == ["ICR038"]
+    assert check_domain(domain) == ()
+    wrong, _ = read(text.replace("(go h1)", "(go h1 h2) (aat ?h)"))
+    assert [each.code for each in check_domain(wrong)] == ["ICR014", "ICR013"]
+
+
+def test_the_agents_of_a_task():
+    domain, codes = read("(task 1 :agents (human arm-2) :robot ur5 :goal (a))")
+    assert domain.tasks == (Task("1", "", "ur5", parse_conditions("(a)"), ("human", "arm-2")),)
+    assert codes == ["ICR038"]
+    assert read("(task 1 :agents () :goal (a))")[1] == []
+
+
+def test_what_nothing_acts_on_yet_is_a_note_and_no_more():
+    _, found = parse_domain("(break (a)) (long-term-goal g :goal (a))", "d.icr")
+    assert {each.severity for each in found} == {Severity.NOTE}
+
+
+def test_older_problems_are_tasks():
+    domain, codes = read("(create-problems ((on a b) (on b c)) ((on c a)) ())")
+    assert [(task.name, len(task.goals)) for task in domain.tasks] == [
+        ("problem-1", 2),
+        ("problem-2", 1),
+        ("problem-3", 0),
+    ]
+    assert codes == ["ICR028"]
+    assert "ICR021" in [each.code for each in check_domain(domain)]
+
+
+def test_the_older_action_and_attributes_mean_the_same_as_the_modern_fields():
+    older = """(skills ((go ?h) :action (*go ?h fast)))
+    (concepts ((wide ?b ^w ?w) :elements ((b ?b ^l ?l)) :attributes ((?w (+ ?l 1)))))"""
+    modern = older.replace(":action (*go ?h fast)", ":actions ((*go ?h fast))")
+    domain, codes = read(older)
+    assert domain == read(modern.replace(":attributes", ":binds"))[0]
+    assert domain.skills[0].actions == (parse_atom("(go ?h fast)"),)
+    assert codes == ["ICR028", "ICR028"]
