@@ -21,8 +21,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from icarus_lite.language import CODES, DomainError, check_domain, has_errors, parse_domain, render
-from icarus_lite.language.brackets import FORM_NAMES
-from icarus_lite.language.sources import decode
+from icarus_lite.language.reading.brackets import FORM_NAMES
+from icarus_lite.language.reading.sources import decode
 
 DOMAINS = Path(__file__).resolve().parents[1] / "domains"
 SECONDS = 2.0

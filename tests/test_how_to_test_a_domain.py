@@ -64,7 +64,7 @@ def test_pytest_collects_them_as_shown(lamps: Path) -> None:
 
 
 def test_every_field_of_a_test_is_told() -> None:
-    grammar = Path(__file__).parent.parent / "icarus_lite" / "language" / "grammar.lark"
+    grammar = Path(__file__).parent.parent / "icarus_lite" / "language" / "reading" / "grammar.lark"
     rules = re.findall(r"\?(?:test|cycle)_field:.*?\n\n", grammar.read_text(), re.DOTALL)
     terminals = set(re.findall(r"\b([A-Z_]{4,})\b", "".join(rules))) - {"LPAR", "RPAR"}
     told = set(re.findall(r"^\| `(:[a-z-]+)", PAGE, re.MULTILINE))

@@ -9,7 +9,7 @@ from icarus_lite.inference.facts import FactStore
 from icarus_lite.inference.matching import Evaluator
 from icarus_lite.inference.rules import Rule
 from icarus_lite.inference.supports import Support
-from icarus_lite.language.stratification import recursive_concepts, strata
+from icarus_lite.language.checking.stratification import recursive_concepts, strata
 from icarus_lite.language.syntax import ConceptClause
 from icarus_lite.symbols import Belief
 

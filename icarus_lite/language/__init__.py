@@ -1,6 +1,7 @@
 """The language of ICARUS domains: text into a checked syntax tree."""
 
-from icarus_lite.language.checker import check_domain
+from icarus_lite.language.checking.checker import check_domain
+from icarus_lite.language.checking.stratification import NotStratifiedError, strata
 from icarus_lite.language.commands import check_commands
 from icarus_lite.language.diagnostics import (
     CODES,
@@ -12,11 +13,10 @@ from icarus_lite.language.diagnostics import (
     to_json,
 )
 from icarus_lite.language.files import diagnose_file, diagnose_text, load_domain
-from icarus_lite.language.formatter import format_text
+from icarus_lite.language.formatting.formatter import format_text
 from icarus_lite.language.fragments import parse_atom, parse_conditions
 from icarus_lite.language.functions import FUNCTIONS, Function, evaluate, function_table
-from icarus_lite.language.reader import parse_domain
-from icarus_lite.language.stratification import NotStratifiedError, strata
+from icarus_lite.language.reading.reader import parse_domain
 
 __all__ = [
     "CODES",

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
+from icarus_lite.language.checking.report import Report
 from icarus_lite.language.diagnostics import Diagnostic
-from icarus_lite.language.explanations import listing
-from icarus_lite.language.report import Report
+from icarus_lite.language.reading.explanations import listing
 from icarus_lite.language.syntax import Domain
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from icarus_lite.language.checker import check_domain
+from icarus_lite.language.checking.checker import check_domain
 from icarus_lite.language.diagnostics import (
     Diagnostic,
     DomainError,
@@ -12,8 +12,8 @@ from icarus_lite.language.diagnostics import (
     in_order,
 )
 from icarus_lite.language.functions import PythonFunctions
-from icarus_lite.language.reader import read_domain
-from icarus_lite.language.sources import read_source
+from icarus_lite.language.reading.reader import read_domain
+from icarus_lite.language.reading.sources import read_source
 from icarus_lite.language.syntax import Domain, Source
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from icarus_lite.language.reader import read_fragment
+from icarus_lite.language.reading.reader import read_fragment
 from icarus_lite.language.syntax import Atom, Condition
 
 

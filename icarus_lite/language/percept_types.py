@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from icarus_lite.language.report import Report
+from icarus_lite.language.checking.report import Report
 from icarus_lite.language.syntax import PerceptType
 
 MAX_LINEAGE = 20

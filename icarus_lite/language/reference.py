@@ -15,7 +15,7 @@ from pathlib import Path
 from icarus_lite.language.diagnostics import CODES
 from icarus_lite.language.functions import FUNCTIONS
 from icarus_lite.language.keywords import FIELDS, FORMS, IN_CLAUSES, Keyword
-from icarus_lite.language.older import GONE_FIELDS, GONE_FORMS
+from icarus_lite.language.reading.older import GONE_FIELDS, GONE_FORMS
 
 _TABLE = re.compile(r"(<!-- table: ([a-z-]+) -->\n).*?(<!-- end -->)", re.DOTALL)
 

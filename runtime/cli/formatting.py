@@ -84,9 +84,9 @@ class _Formatted:
 def _format(path: str, *, modernize: bool) -> _Formatted | None:
     """Format one file, or show what is wrong with it."""
     from icarus_lite.language import DomainError, render
-    from icarus_lite.language.formatter import format_text
-    from icarus_lite.language.reader import read_forms
-    from icarus_lite.language.sources import decode, reason_of
+    from icarus_lite.language.formatting.formatter import format_text
+    from icarus_lite.language.reading.reader import read_forms
+    from icarus_lite.language.reading.sources import decode, reason_of
 
     shown = "<stdin>" if path == _STANDARD_INPUT else path
     try:

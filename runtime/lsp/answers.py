@@ -151,7 +151,7 @@ def symbols(project: Project) -> list[types.DocumentSymbol]:
 
 def formatting(project: Project) -> list[types.TextEdit]:
     """Give the edit that lays a text out, or none if it is laid out already."""
-    from icarus_lite.language.formatter import format_text  # noqa: PLC0415 - not always needed
+    from icarus_lite.language.formatting.formatter import format_text  # noqa: PLC0415 - not always needed
 
     text = project.text
     laid_out = format_text(text)

@@ -7,10 +7,10 @@ from types import MappingProxyType
 
 from lsprotocol import types
 
+from icarus_lite.language.checking.vocabulary import Origin
 from icarus_lite.language.editing import Occurrence, Role
 from icarus_lite.language.functions import FUNCTIONS
 from icarus_lite.language.keywords import FORMS, field_named
-from icarus_lite.language.vocabulary import Origin
 from runtime.lsp.documents import Project
 
 _TYPES: Mapping[Role, types.SemanticTokenTypes] = MappingProxyType(

@@ -14,7 +14,7 @@ from pygls.workspace import Workspace
 
 from icarus_lite.language import DomainError
 from icarus_lite.language.editing import File, Index, Role
-from icarus_lite.language.sources import read_source
+from icarus_lite.language.reading.sources import read_source
 from runtime.lsp.positions import Positions
 
 _MOST_FILES = 200

@@ -8,8 +8,8 @@ from types import MappingProxyType
 from lsprotocol import types
 
 from icarus_lite.language import Diagnostic, Severity, diagnose_text
-from icarus_lite.language.brackets import Lines
 from icarus_lite.language.editing import Role
+from icarus_lite.language.reading.brackets import Lines
 from runtime.lsp.documents import Project
 
 _SEVERITIES: Mapping[Severity, types.DiagnosticSeverity] = MappingProxyType(

@@ -12,7 +12,7 @@ from icarus_lite import (
     Percept,
     Status,
 )
-from icarus_lite.language.reader import parse_domain
+from icarus_lite.language.reading.reader import parse_domain
 
 DOMAIN, PROBLEMS = parse_domain("""
 (percepts (hand ^gripping) (object ^type))

@@ -6,7 +6,7 @@ from rich.console import Console
 
 from aapa import Anchor, AnchorStatus
 from icarus_lite import Action, Agent, Outcome, Percept, Status
-from icarus_lite.language.reader import parse_domain
+from icarus_lite.language.reading.reader import parse_domain
 from runtime.drivers import ArmState
 from runtime.loop import CycleReport
 from runtime.view import RunView

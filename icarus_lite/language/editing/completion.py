@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from icarus_lite.language.checking.vocabulary import Origin
 from icarus_lite.language.editing.descriptions import kinds_of
 from icarus_lite.language.editing.expectations import accepted, keyword_terminals
 from icarus_lite.language.editing.index import Index, Thing
@@ -13,7 +14,6 @@ from icarus_lite.language.editing.nesting import Group, Node, nest
 from icarus_lite.language.editing.occurrences import Occurrence, Place, Role, occurrences
 from icarus_lite.language.functions import FUNCTIONS, Function
 from icarus_lite.language.keywords import FORMS, NOT, field_named
-from icarus_lite.language.vocabulary import Origin
 
 
 @dataclass(frozen=True, slots=True)

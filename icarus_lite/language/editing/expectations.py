@@ -15,7 +15,7 @@ from typing import Any
 from icarus_lite.language.editing.lexemes import Kind, Lexeme
 from icarus_lite.language.editing.nesting import Group, Node
 from icarus_lite.language.keywords import FORMS, Content
-from icarus_lite.language.parts import MalformedTermError
+from icarus_lite.language.reading.parts import MalformedTermError
 
 _KEYWORD = re.compile(r"(:?[a-z][a-z-]*)\(\?!")
 _HEAD = "(x)"
@@ -30,7 +30,7 @@ def accepted(chain: Sequence[Group]) -> frozenset[str]:
     # Lark takes longer to import than everything else here, and highlighting has no use for it.
     from lark import UnexpectedInput  # noqa: PLC0415
 
-    from icarus_lite.language.parsing import parser  # noqa: PLC0415
+    from icarus_lite.language.reading.parsing import parser  # noqa: PLC0415
 
     parse: Any = parser().parse_interactive(skeleton(chain), start="file")
     try:
@@ -43,7 +43,7 @@ def accepted(chain: Sequence[Group]) -> frozenset[str]:
 @functools.cache
 def keyword_terminals() -> Mapping[str, str]:
     """Give the keywords of the grammar, by the names of their terminals."""
-    from icarus_lite.language.parsing import parser  # noqa: PLC0415
+    from icarus_lite.language.reading.parsing import parser  # noqa: PLC0415
 
     found = {}
     for terminal in parser().terminals:

@@ -7,8 +7,8 @@ from bisect import bisect_right
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
+from icarus_lite.language.checking.vocabulary import ATTACHED, Origin
 from icarus_lite.language.editing.occurrences import Occurrence, Role, occurrences
-from icarus_lite.language.vocabulary import ATTACHED, Origin
 
 _THINGS = (
     Role.PREDICATE,

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import TypeAlias
 
-from icarus_lite.language.brackets import FORM_NAMES, MAX_DEPTH
 from icarus_lite.language.editing.lexemes import Kind, Lexeme
+from icarus_lite.language.reading.brackets import FORM_NAMES, MAX_DEPTH
 
 
 @dataclass(slots=True)

@@ -11,13 +11,13 @@ import itertools
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
-from icarus_lite.language.expressions import variables_in
+from icarus_lite.language.checking.expressions import variables_in
+from icarus_lite.language.checking.report import Report
 from icarus_lite.language.pddl.kinds import is_equality
 from icarus_lite.language.pddl.scope import RefusedError
 from icarus_lite.language.pddl.situation import KnownState
 from icarus_lite.language.pddl.syntax import And, Equal, Exists, Formula, Not, Or, Typed
 from icarus_lite.language.pddl.vocabulary import PddlVocabulary, variable_name
-from icarus_lite.language.report import Report
 from icarus_lite.language.syntax import Atom, Call, Condition, Constant, Expression, Variable
 from icarus_lite.symbols import Value
 

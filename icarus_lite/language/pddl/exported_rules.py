@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from icarus_lite.language.checking.vocabulary import ATTACHED
 from icarus_lite.language.pddl.exported_conditions import Body, Conditions
 from icarus_lite.language.pddl.exported_effects import ASSERTED, CIRCLE, UNTOUCHED
 from icarus_lite.language.pddl.scope import RefusedError
@@ -20,7 +21,6 @@ from icarus_lite.language.pddl.syntax import (
 )
 from icarus_lite.language.pddl.vocabulary import PddlVocabulary, variable_name
 from icarus_lite.language.syntax import ConceptClause, Constant
-from icarus_lite.language.vocabulary import ATTACHED
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from icarus_lite.language.checking.report import Report
 from icarus_lite.language.diagnostics import Diagnostic, DomainError, has_errors, in_order
-from icarus_lite.language.formatter import format_text
+from icarus_lite.language.formatting.formatter import format_text
 from icarus_lite.language.pddl.icr_text import domain_text
 from icarus_lite.language.pddl.importer import import_problem
 from icarus_lite.language.pddl.reading import read_pddl_domain, read_pddl_problem
-from icarus_lite.language.report import Report
-from icarus_lite.language.sources import read_source
+from icarus_lite.language.reading.sources import read_source
 from icarus_lite.language.syntax import Domain, Source
 
 

@@ -9,6 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
+from icarus_lite.language.checking.report import Report
+from icarus_lite.language.checking.stratification import negation_cycles
+from icarus_lite.language.checking.vocabulary import ATTACHED
 from icarus_lite.language.pddl.conditions import (
     Alternative,
     Alternatives,
@@ -27,8 +30,6 @@ from icarus_lite.language.pddl.syntax import (
     Rule,
     Typed,
 )
-from icarus_lite.language.report import Report
-from icarus_lite.language.stratification import negation_cycles
 from icarus_lite.language.syntax import (
     Atom,
     Call,
@@ -42,7 +43,6 @@ from icarus_lite.language.syntax import (
     Term,
     Variable,
 )
-from icarus_lite.language.vocabulary import ATTACHED
 
 TASK = "problem"
 """The name of the task that an imported problem becomes."""

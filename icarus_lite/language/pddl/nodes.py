@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from importlib import resources
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeGuard
 
-from icarus_lite.language.brackets import MAX_DEPTH
-from icarus_lite.language.report import Report
+from icarus_lite.language.checking.report import Report
+from icarus_lite.language.reading.brackets import MAX_DEPTH
 from icarus_lite.language.syntax import Span
 
 if TYPE_CHECKING:

@@ -6,8 +6,8 @@ from collections.abc import Collection, Mapping
 from contextlib import suppress
 from types import MappingProxyType
 
+from icarus_lite.language.checking.report import Report
 from icarus_lite.language.diagnostics import Diagnostic, has_errors, in_order
-from icarus_lite.language.explanations import closest
 from icarus_lite.language.pddl.formulas import checked_fact, effects, formula, note_costs
 from icarus_lite.language.pddl.nodes import Group, Node, Word, read_nodes
 from icarus_lite.language.pddl.scope import RefusedError, Scope, pairs, typed_list
@@ -22,7 +22,7 @@ from icarus_lite.language.pddl.syntax import (
     Rule,
     Typed,
 )
-from icarus_lite.language.report import Report
+from icarus_lite.language.reading.explanations import closest
 from icarus_lite.language.syntax import NOWHERE, Source, Span
 
 _DOMAIN_SECTIONS = (

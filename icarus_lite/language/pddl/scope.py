@@ -6,10 +6,10 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import NoReturn
 
-from icarus_lite.language.explanations import closest, listing
+from icarus_lite.language.checking.report import Report
 from icarus_lite.language.pddl.nodes import Group, Node, Word
 from icarus_lite.language.pddl.syntax import OBJECT, Predicate, Typed, is_a
-from icarus_lite.language.report import Report
+from icarus_lite.language.reading.explanations import closest, listing
 from icarus_lite.language.syntax import Span
 
 

@@ -10,10 +10,10 @@ from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
+from icarus_lite.language.checking.vocabulary import ATTACHED
 from icarus_lite.language.pddl.attaching import Attaching, attachings
 from icarus_lite.language.pddl.kinds import planned_skills
 from icarus_lite.language.syntax import Atom, Condition, Constant, Domain, Term, Variable
-from icarus_lite.language.vocabulary import ATTACHED
 from icarus_lite.symbols import Belief, Value
 
 Place: TypeAlias = tuple[str, int | str]

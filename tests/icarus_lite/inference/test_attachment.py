@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from icarus_lite import Action
 from icarus_lite.inference import Hierarchy, advance
-from icarus_lite.language.reader import parse_domain
+from icarus_lite.language.reading.reader import parse_domain
 
 _DOMAIN, _ = parse_domain("""
 (attachments

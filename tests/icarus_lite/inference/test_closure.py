@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from icarus_lite import Belief, InferenceError
 from icarus_lite.inference import Closure, Derivation, FactStore, Matcher, ground
-from icarus_lite.language.reader import parse_domain
-from icarus_lite.language.stratification import NotStratifiedError, strata
+from icarus_lite.language.checking.stratification import NotStratifiedError, strata
+from icarus_lite.language.reading.reader import parse_domain
 from icarus_lite.language.syntax import Atom, ConceptClause, Condition, Constant, Variable
 
 _REFERENCE = Path(__file__).parents[2] / "reference" / "naive_inference.py"

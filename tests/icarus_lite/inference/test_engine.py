@@ -6,7 +6,7 @@ import pytest
 
 from icarus_lite import Action, FrameError, Outcome, Percept, Status
 from icarus_lite.inference import Assertion, InferenceEngine, Memory
-from icarus_lite.language.reader import parse_domain
+from icarus_lite.language.reading.reader import parse_domain
 
 TEXT = """
 (percepts (hand) (object ^type) (lamp))

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 from icarus_lite import Action, Belief, Outcome, Percept
 from icarus_lite.inference import InferenceEngine, Memory, explain
-from icarus_lite.language.reader import parse_domain
+from icarus_lite.language.reading.reader import parse_domain
 
 DOMAIN, _ = parse_domain("""(percepts (hand) (object))
 (concepts

@@ -5,7 +5,7 @@ import pytest
 from icarus_lite.agent import Agent
 from icarus_lite.errors import FrameError
 from icarus_lite.inference import InferenceEngine, Memory
-from icarus_lite.language.reader import parse_domain
+from icarus_lite.language.reading.reader import parse_domain
 from icarus_lite.symbols import Action, Outcome, Percept
 
 DOMAIN, _ = parse_domain("""

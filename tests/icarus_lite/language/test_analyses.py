@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from icarus_lite.language import check_domain, parse_domain
-from icarus_lite.language.reachability import changeable_signs
+from icarus_lite.language.checking.reachability import changeable_signs
 
 PERCEPTS = "(percepts (object ^type ^x ^y) (hand ^x))\n"
 

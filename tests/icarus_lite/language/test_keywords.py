@@ -1,8 +1,8 @@
 from __future__ import annotations
 
-from icarus_lite.language import assembly
-from icarus_lite.language.brackets import FORM_NAMES
+from icarus_lite.language import older_names
 from icarus_lite.language.keywords import FIELDS, FORMS, IN_CLAUSES, NOT, field_named
+from icarus_lite.language.reading.brackets import FORM_NAMES
 
 
 def test_the_forms_are_those_of_the_language():
@@ -11,10 +11,10 @@ def test_the_forms_are_those_of_the_language():
 
 def test_older_names_mean_what_the_reader_takes_them_for():
     forms = {name: each.modern for name, each in FORMS.items() if each.modern}
-    assert assembly._MODERN_FORMS.items() <= forms.items()
+    assert older_names.MODERN_FORMS.items() <= forms.items()
     fields = {**FIELDS, **IN_CLAUSES}
     older = {name: each.modern for name, each in fields.items() if each.modern}
-    assert older == dict(assembly._MODERN_FIELDS)
+    assert older == dict(older_names.MODERN_FIELDS)
 
 
 def test_some_fields_are_older_names_in_clauses_only():

@@ -1,7 +1,7 @@
 from __future__ import annotations
 
 from icarus_lite import Agent, Outcome, Percept
-from icarus_lite.language.reader import parse_domain
+from icarus_lite.language.reading.reader import parse_domain
 
 DOMAIN, PROBLEMS = parse_domain("""
 (percepts (hand) (object ^type))

@@ -1,7 +1,7 @@
 from __future__ import annotations
 
 from icarus_lite.language.fragments import parse_conditions
-from icarus_lite.language.reader import parse_domain
+from icarus_lite.language.reading.reader import parse_domain
 from icarus_lite.planning import can_change, relevance
 
 DOMAIN, _ = parse_domain("""

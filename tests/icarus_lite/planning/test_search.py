@@ -5,7 +5,7 @@ import pytest
 from icarus_lite import Action, Percept
 from icarus_lite.inference import InferenceEngine, Memory
 from icarus_lite.language.fragments import parse_conditions
-from icarus_lite.language.reader import parse_domain
+from icarus_lite.language.reading.reader import parse_domain
 from icarus_lite.planning import Imagination, NoPlan, Plan, find_plan
 
 BLOCKS = """

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from icarus_lite import Action, Agent, Outcome, Percept, TraceError, load_domain
-from icarus_lite.language.reader import parse_domain
+from icarus_lite.language.reading.reader import parse_domain
 from icarus_lite.trace import TraceWriter, cycle_record, header, inputs_of, read_trace
 
 DOMAIN, _ = parse_domain(

@@ -12,7 +12,7 @@ from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 from pygls.lsp.client import LanguageClient
 
-from icarus_lite.language.formatter import format_text
+from icarus_lite.language.formatting.formatter import format_text
 
 DEADLINE_S = 30
 DOMAINS = Path(__file__).parents[3] / "domains"

@@ -1,7 +1,7 @@
 from __future__ import annotations
 
+from icarus_lite.language.checking.vocabulary import Origin
 from icarus_lite.language.editing import File, Index, Role, Thing
-from icarus_lite.language.vocabulary import Origin
 
 TEXT = """\
 (percepts (object ^type ^x) (part :is object ^grip))

@@ -9,7 +9,7 @@ import pytest
 
 from icarus_lite.inference import InferenceEngine, given_memory, given_percepts
 from icarus_lite.language import DomainError, Severity, check_domain, diagnose_text, parse_domain
-from icarus_lite.language.formatter import format_text
+from icarus_lite.language.formatting.formatter import format_text
 from icarus_lite.language.pddl import (
     import_files,
     import_sources,

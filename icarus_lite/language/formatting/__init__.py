@@ -1,0 +1,1 @@
+"""Formatting: the canonical layout, comments kept where they were."""

@@ -1,0 +1,1 @@
+"""Reading: text into a syntax tree, with everything that keeps it from being one."""
