@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import ipaddress
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
 from aapa import Camera, Detection
+from runtime.addresses import is_loopback
 from runtime.cell import Cell
 from runtime.config import RobotConfig, load_robot
 from runtime.controller.bench_client import BenchClient
@@ -174,13 +174,3 @@ def connect(
     if live or is_loopback(address):
         return UrDriver(address, config, parts, log=log)
     return DryRunDriver(config, parts)
-
-
-def is_loopback(address: str) -> bool:
-    """Tell whether an address is this machine's own, so that no real arm can be behind it."""
-    if address == "localhost":
-        return True
-    try:
-        return ipaddress.ip_address(address).is_loopback
-    except ValueError:
-        return False

@@ -10,7 +10,6 @@ A software stop is not an emergency stop. Keep the button within reach.
 from __future__ import annotations
 
 import contextlib
-import ipaddress
 import os
 import time
 from collections import deque
@@ -19,6 +18,7 @@ from dataclasses import replace
 from multiprocessing import get_context
 from typing import Final, Self
 
+from runtime.addresses import answers, is_loopback
 from runtime.config import RobotConfig
 from runtime.drivers.driver import ArmState
 from runtime.drivers.stepping import StepEnd, SteppingDriver
@@ -69,8 +69,9 @@ class UrDriver(SteppingDriver):
         *,
         log: Callable[[str], None] | None = None,
     ) -> None:
-        config = _patient(config) if _on_this_machine(address) else config
+        config = _patient(config) if is_loopback(address) else config
         super().__init__(config, parts)
+        self._address: Final = address
         self._log = log or _discard
         self._words: deque[str] = deque(maxlen=_WORDS_KEPT)
         self._half_a_line = b""
@@ -172,9 +173,12 @@ class UrDriver(SteppingDriver):
         self._listen()
         self._take_reports()
         if not self._worker.is_alive():
-            self._die(
+            reason = (
                 f"the process that drives the arm ended by itself (status {self._worker.exitcode})"
             )
+            if not answers(self._address):
+                reason += f"; the controller at {self._address} no longer answers"
+            self._die(reason)
         published = self._board.read()
         if not self._ready or published is None:
             return
@@ -240,13 +244,6 @@ class UrDriver(SteppingDriver):
 
     def _quoting(self, reason: str) -> str:
         return f'{reason} (the client said: "{self._words[-1]}")' if self._words else reason
-
-
-def _on_this_machine(address: str) -> bool:
-    try:
-        return ipaddress.ip_address(address).is_loopback
-    except ValueError:
-        return address == "localhost"
 
 
 def _patient(config: RobotConfig) -> RobotConfig:
