@@ -34,6 +34,7 @@ from icarus_lite.language.syntax import (
 _Slot: TypeAlias = tuple[str, str | int]  # a predicate, and an attribute or argument of it
 
 _SYMBOL, _NUMBER = "a symbol", "a number"
+_UNKNOWN = "something unknown"  # stands among the kinds of a slot that a clause fills
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +58,7 @@ class _Slots:
         if slot in self.defined:
             return self.defined[slot]
         known = self.constants.get(slot, {})
-        if len(known) != 1:
+        if len(known) != 1 or _UNKNOWN in known:
             return None
         ((kind, span),) = known.items()
         what = f"`^{slot[1]}` of `{slot[0]}`" if isinstance(slot[1], str) else f"`{slot[0]}`"
@@ -119,7 +120,7 @@ class _Kinds:
             evidence = known.get(term.name) if isinstance(term, Variable) else None
             if evidence is None or not evidence.certain:
                 self._slots.defined.pop(slot, None)
-                self._slots.constants.setdefault(slot, {}).setdefault("unknown", concept.span)
+                self._slots.constants.setdefault(slot, {}).setdefault(_UNKNOWN, concept.span)
             elif slot not in self._slots.constants:
                 self._slots.defined.setdefault(slot, evidence)
 

@@ -105,3 +105,14 @@ def test_each_circle_of_impossible_concepts_is_told_once():
     text = """(concepts ((a ?o) :elements ((b ?o))) ((b ?o) :elements ((a ?o)))
       ((c ?o) :elements ((d ?o))) ((d ?o) :elements ((c ?o))))"""
     assert codes(text) == ["ICR041", "ICR041"]
+
+
+def test_an_argument_of_which_nothing_is_known_conflicts_with_nothing():
+    text = """(percepts (peg) (disk))
+(concepts ((top ?disk ?peg) :elements ((on-peg ?disk ?peg))))
+(skills ((move ?disk ?from ?to)
+         :elements ((top ?disk ?from) (peg ?to)) :tests ((/= ?from ?to))
+         :actions ((*move ?disk ?from ?to)) :effects ((on-peg ?disk ?to))))"""
+    domain, problems = parse_domain(text)
+    assert domain is not None, problems
+    assert "ICR044" not in [found.code for found in check_domain(domain)]
