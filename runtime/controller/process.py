@@ -134,11 +134,16 @@ class ControllerProcess:
         Raises:
             ControllerError: The controller refused, with its own sentence, or cannot be reached.
         """
+        if not self.alive:
+            # By now its address may be another controller's.
+            raise ControllerError(
+                f"the {NAME} at {self.address} has ended, with status {self._child.returncode}"
+            )
         return self._bench.request(request)
 
     def set_tool_input(self, index: int, on: bool) -> None:  # noqa: FBT001 - a signal's level
         """Wire a level to a tool digital input (0 or 1), as a gripper's sensor would."""
-        self._bench.set_tool_input(index, on)
+        self.bench({"inputs": {f"tool_digital_in_{index}": on}})
 
     def close(self) -> None:
         """End the controller: ask, wait, and kill if it does not listen. Never raises."""

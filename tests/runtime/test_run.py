@@ -17,7 +17,7 @@ from runtime.controller.process import ControllerProcess
 from runtime.loop import CycleReport
 from runtime.run import RunOptions, RunResult, run_task
 
-pytestmark = [pytest.mark.robot, pytest.mark.xdist_group("robot")]
+pytestmark = pytest.mark.robot
 CLOCK = 6.0
 
 

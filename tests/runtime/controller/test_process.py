@@ -107,7 +107,7 @@ def test_it_ends_in_good_order_on_a_signal(number):
     process = ControllerProcess.start("ur5")
     os.kill(process.pid, number)
     assert process._child.wait(5) == 0
-    with pytest.raises(ControllerError, match="is the controller still running"):
+    with pytest.raises(ControllerError, match="has ended, with status 0"):
         process.bench({"query": "state"})
     process.close()
     process.close()
