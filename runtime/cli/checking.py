@@ -11,6 +11,7 @@ from runtime.cli.app import BAD_INPUT, HOLDS, DomainFiles, Json, app
 
 if TYPE_CHECKING:
     from icarus_lite.language import Diagnostic
+    from icarus_lite.language.syntax import Domain
 
 Verbose = Annotated[
     bool, typer.Option("--verbose", "-v", help="Tell of names that nothing uses as well.")
@@ -28,13 +29,16 @@ def check(
 ) -> None:
     """Parse and check domain files; tell every problem with file, line, column and a hint.
 
-    Warnings and notes are silenced by a comment in their line: `; noqa: ICR029`.
+    A domain with a task for a robot is also checked for commands that no driver offers. Warnings
+    and notes are silenced by a comment in their line: `; noqa: ICR029`.
     """
     from icarus_lite.language import diagnose_file, render, to_json
 
     found: list[Diagnostic] = []
     for file in files:
-        _, source, diagnostics = diagnose_file(file, thorough=verbose)
+        domain, source, diagnostics = diagnose_file(file, thorough=verbose)
+        if domain is not None and any(task.robot for task in domain.tasks):
+            diagnostics += _unoffered(domain)
         found.extend(diagnostics)
         if not as_json:
             for diagnostic in diagnostics:
@@ -45,6 +49,14 @@ def check(
     else:
         typer.echo(_summary(len(files), found))
     raise typer.Exit(BAD_INPUT if errors else HOLDS)
+
+
+def _unoffered(domain: Domain) -> tuple[Diagnostic, ...]:
+    """Find the commands that the arms cannot carry out."""
+    from icarus_lite.language import check_commands
+    from runtime.drivers.motions import COMMANDS
+
+    return check_commands(domain, COMMANDS)
 
 
 def _summary(files: int, found: list[Diagnostic]) -> str:

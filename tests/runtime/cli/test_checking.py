@@ -39,3 +39,17 @@ def test_findings_in_an_included_file_are_told_with_its_name(check, tmp_path):
     assert "parts.icr:2:1: error[ICR021]: the task `1` has no goal\n    2 | (task 1)" in done.output
     (row,) = json.loads(check("top.icr", "--json").stdout)
     assert (row["file"], row["line"], row["code"]) == ("parts.icr", 2, "ICR021")
+
+
+def test_a_command_that_no_driver_offers_is_told_where_a_task_is_for_a_robot(check, tmp_path):
+    text = """(percepts (object))
+(skills ((weld ?o) :elements ((object ?o)) :actions ((*weld ?o)) :effects ((hot ?o))))
+(task weld "Weld" {robot} :goal ((hot case)))
+"""
+    file = tmp_path / "d.icr"
+    file.write_text(text.replace("{robot}", ":robot ur5"))
+    done = check("d.icr")
+    assert done.exit_code == 2
+    assert "d.icr:2:56: error[ICR035]: no driver offers the command `*weld`" in done.output
+    file.write_text(text.replace("{robot}", ""))
+    assert check("d.icr").exit_code == 0
