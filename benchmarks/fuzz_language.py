@@ -33,6 +33,7 @@ ODD = ["\\", "\n", "\r", "\t", "\0", "\ufeff", "\u2028", "\ud7ff", "é", "歯", 
 FIELDS = [":elements", ":tests", ":binds", ":while", ":actions", ":subskills", ":effects"]
 FIELDS += [":timeout", ":until", ":child", ":parent", ":goal", ":percepts", ":is", ":init", ":then"]
 FIELDS += [":changes", ":value", ":foo", ":expect", ":agents", ":relevance", ":priority"]
+FIELDS += [":break", "on-gain", "on-failure"]
 TERMS = [
     "not",
     "?x",

@@ -63,6 +63,13 @@ def with_mistake(text: str) -> str:
     return f"{text}\n(taks 1.1 :goal ((attached hubcover case)))\n"
 
 
+def with_forgotten(text: str) -> str:
+    """Give the text with a parenthesis forgotten in the middle of its last form but one."""
+    place = text.rindex("((put-away-")
+    end = text.index(")\n", text.index(":elements", place))
+    return text[:end] + text[end + 1 :]
+
+
 def milliseconds(work: Callable[[], object], repeats: int) -> float:
     """Give the median processor time of some work."""
     times = []
@@ -73,23 +80,24 @@ def milliseconds(work: Callable[[], object], repeats: int) -> float:
     return 1000 * statistics.median(times)
 
 
-def row(size: int, repeats: int) -> tuple[int, float, float, float]:
-    """Measure one size: its characters, then ms to parse, to check, and to explain a mistake."""
+def row(size: int, repeats: int) -> tuple[int, float, float, float, float]:
+    """Measure one size: its characters, then ms to parse, to check, and to explain two mistakes."""
     text = domain_text(size)
     domain, problems = parse_domain(text, "domain.icr")
     assert domain is not None, problems
     assert not [each for each in check_domain(domain) if each.severity == "error"]
-    wrong = with_mistake(text)
+    wrong, forgotten = with_mistake(text), with_forgotten(text)
 
-    def explain() -> list[str]:
+    def explain(wrong: str) -> list[str]:
         return [render(each, wrong) for each in parse_domain(wrong, "domain.icr")[1]]
 
-    assert len(explain()) == 1
+    assert len(explain(wrong)) == len(explain(forgotten)) == 1
     return (
         len(text),
         milliseconds(lambda: parse_domain(text, "domain.icr"), repeats),
         milliseconds(lambda: check_domain(domain), repeats),
-        milliseconds(explain, repeats),
+        milliseconds(lambda: explain(wrong), repeats),
+        milliseconds(lambda: explain(forgotten), repeats),
     )
 
 
@@ -111,8 +119,8 @@ def report(repeats: int) -> str:
     """Measure everything and write it as a page."""
     rows = [row(size, repeats) for size in SIZES]
     lines = [
-        f"| {size / 1000:.1f} kB | {parse:.1f} | {check:.1f} | {wrong:.1f} |"
-        for size, parse, check, wrong in rows
+        f"| {size / 1000:.1f} kB | {parse:.1f} | {check:.1f} | {wrong:.1f} | {forgotten:.1f} |"
+        for size, parse, check, wrong, forgotten in rows
     ]
     growth = rows[2][1] / rows[1][1], rows[2][2] / rows[1][2]
     table = "\n".join(lines)
@@ -122,8 +130,8 @@ def report(repeats: int) -> str:
 Made by `make bench-language`: median of {repeats} runs, processor time in ms,
 Python {platform.python_version()}.
 
-| text | parse | check | parse, with a mistake in the last form |
-|---|---|---|---|
+| text | parse | check | parse, with a mistake in the last form | with a parenthesis forgotten |
+|---|---|---|---|---|
 {table}
 
 Ten times the text, {larger}, takes {growth[0]:.1f} times as long to parse and {growth[1]:.1f} times

@@ -40,14 +40,13 @@ MISTAKES = (
         "A parenthesis forgotten at the end of a clause",
         P + "(concepts\n  ((left ?o) :elements ((object ?o ^x ?x)) :tests ((< ?x 0)))\n\n"
         "(goals (left o1))",
-        "Mostly: the form is named and the next one not dragged into it; which clause it was, the "
-        "layout cannot tell.",
+        "Yes: it names the form and the line at whose end the parenthesis is missing.",
     ),
     Mistake(
         "A parenthesis too many",
         P + "(concepts\n  ((plug ?o) :elements ((object ?o ^type plug))))\n"
         "  ((left ?o) :elements ((object ?o ^x ?x)) :tests ((< ?x 0))))",
-        "Yes: it says to look before the place, where the form was closed too early.",
+        "Yes: it shows the very parenthesis, and what it closes too early.",
     ),
     Mistake(
         "A field's list without its outer parentheses",
@@ -226,6 +225,121 @@ MISTAKES = (
         P,
         "Yes.",
         encoding="utf-16",
+    ),
+    Mistake(
+        "A parenthesis forgotten in the middle of a clause, among others that are fine",
+        P + "(concepts\n  ((near ?a ?b)\n   :elements ((object ?a ^x ?x) (object ?b ^x ?x)\n"
+        "   :tests ((/= ?a ?b)))\n  ((left ?o) :elements ((object ?o ^x ?x)) :tests ((< ?x 0))))",
+        "Yes: the clause, the list in it and the line; the clauses behind it are not blamed.",
+    ),
+    Mistake(
+        "A parenthesis forgotten before a field in the same line, and a slip further on",
+        P + "(concepts\n  ((left ?o :elements ((object ?o ^x ?x)) :tests ((< ?x 0)))\n"
+        "  ((plug ?o) :elements ((objct ?o ^type plug))))",
+        "Yes: it says before which word; and the other mistake is told in the same run.",
+    ),
+    Mistake(
+        "A comparison written as in mathematics",
+        P + "(concepts ((left ?o) :elements ((object ?o ^x ?x)) :tests ((?x < 0))))",
+        "Yes: it writes the test as it must be.",
+    ),
+    Mistake(
+        "A comparison inside a pattern",
+        P + "(concepts ((left ?o) :elements ((object ?o ^x < 0))))",
+        "Yes: it shows how to name the value and where to compare it.",
+    ),
+    Mistake(
+        "An attribute with an equals sign",
+        P + "(concepts ((plug ?o) :elements ((object ?o ^type=plug))))",
+        "Yes.",
+    ),
+    Mistake(
+        "An attribute marked with a colon",
+        P + "(concepts ((plug ?o) :elements ((object ?o :type plug))))",
+        "Yes.",
+    ),
+    Mistake(
+        "A field without its colon",
+        P + "(concepts ((plug ?o) elements ((object ?o ^type plug))))",
+        "Yes.",
+    ),
+    Mistake(
+        "A clause whose head has no parentheses of its own",
+        P + "(concepts (plug ?o) :elements ((object ?o ^type plug)))",
+        "Yes: it shows the shape of a clause.",
+    ),
+    Mistake(
+        "Alternatives joined by `or`",
+        P + "(concepts ((thing ?o) :elements (or (object ?o) (hand ?o))))",
+        "Yes: one clause for each alternative.",
+    ),
+    Mistake(
+        "`nil` for an empty field",
+        P + "(concepts ((busy) :elements nil))",
+        "Yes.",
+    ),
+    Mistake(
+        "A goal of several literals without a parenthesis around them",
+        P + "(skills ((grasp ?h ?o) :elements ((hand ?h) (object ?o)) :actions ((*grasp ?h ?o))\n"
+        "  :effects ((held ?o))))\n(task fetch :goal (held o1) (held o2))",
+        "Yes: it shows the list.",
+    ),
+    Mistake(
+        "A test among the effects",
+        P + "(skills ((push ?o) :elements ((object ?o ^x ?x)) :actions ((*push ?o))\n"
+        "  :effects ((= ?x 3))))",
+        "Yes: an effect is a belief. It used to load, and would have been believed.",
+    ),
+    Mistake(
+        "A sum as an argument",
+        P + "(skills ((push ?o) :elements ((object ?o ^x ?x)) :actions ((*push ?o))\n"
+        "  :effects ((at ?o (+ ?x 1)))))",
+        "Mostly: it says where to compute, but a skill has no :binds, so a concept must be found.",
+    ),
+    Mistake(
+        "A precondition, as in PDDL",
+        P + "(skills ((go ?h) :precondition ((hand ?h)) :actions ((*go ?h))))",
+        "Yes.",
+    ),
+    Mistake(
+        "Curly quotation marks, from a word processor",
+        "(domain shop “A shop”)\n" + P,
+        "Yes.",
+    ),
+    Mistake(
+        "A blank that is none, from a web page",
+        P + "(concepts ((plug\u00a0?o) :elements ((object ?o ^type plug))))",
+        "Yes: nobody could have seen it.",
+    ),
+    Mistake(
+        "A comma in a number",
+        P + "(concepts ((left ?o) :elements ((object ?o ^x ?x)) :tests ((< ?x 0,5))))",
+        "Yes.",
+    ),
+    Mistake(
+        "A number with a unit",
+        P + "(concepts ((left ?o) :elements ((object ?o ^x ?x)) :tests ((< ?x 5cm))))",
+        "Yes; what the unit is, only the percepts' author knows.",
+    ),
+    Mistake(
+        "`_` for anything, as in Prolog",
+        P + "(concepts ((busy) :elements ((object _ ^type plug))))",
+        "Yes. It used to load without a word, and never matched.",
+    ),
+    Mistake(
+        "A comment of another language",
+        "# what there is\n" + P,
+        "Yes.",
+    ),
+    Mistake(
+        "Capitals",
+        "(PERCEPTS (object ^type))\n(concepts ((Plug ?O) :elements ((object ?o ^type plug))))",
+        "Yes: form and variable are both recognised. The heads of concepts may be in capitals.",
+    ),
+    Mistake(
+        "A moment of a skill as the breakpoint of a concept",
+        P + "(concepts ((plug ?o) :elements ((object ?o ^type plug)) :break on-start))",
+        "Yes: it lists those of a concept.",
     ),
 )
 

@@ -20,7 +20,7 @@ CODES: Mapping[str, str] = MappingProxyType(
     {
         "ICR001": "The file cannot be read as UTF-8 text.",
         "ICR002": 'A "(" is never closed.',
-        "ICR003": 'A ")" closes nothing.',
+        "ICR003": 'A ")" is one too many, or a "(" is missing.',
         "ICR004": "A string or a block comment is never closed.",
         "ICR005": "Parentheses are nested too deeply.",
         "ICR006": "The file holds no form at all.",
@@ -63,6 +63,8 @@ CODES: Mapping[str, str] = MappingProxyType(
         "ICR043": "The detach action of an attachment never undoes it.",
         "ICR044": "A test compares what can never be compared, such as a symbol with a number.",
         "ICR045": "No skill can ever change what a goal asks for.",
+        "ICR046": "A breakpoint is set for a moment that there is not.",
+        "ICR047": "A word is taken for a name, though something else must be meant.",
         "ICR070": "A fact of :init cannot be given, or serves nothing.",
     }
 )

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
+from types import MappingProxyType
 
 from icarus_lite.language.checking.checker import check_domain
 from icarus_lite.language.diagnostics import (
@@ -68,6 +70,7 @@ def diagnose_text(
     *,
     functions: PythonFunctions | None = None,
     thorough: bool = False,
+    unsaved: Mapping[str, str] = MappingProxyType({}),
 ) -> tuple[Domain | None, Source, tuple[Diagnostic, ...]]:
     """Do as `diagnose_file` does, with a text that is not saved yet.
 
@@ -76,15 +79,23 @@ def diagnose_text(
         path: The file that it will be; its includes are read from there.
         functions: Python functions that its tests may call, by name.
         thorough: Whether to tell of what nobody uses as well.
+        unsaved: Texts of included files that are not saved yet, by their real paths.
     """
-    return _diagnose(Source(str(path), text), Path(path).parent, functions, thorough=thorough)
+    source = Source(str(path), text)
+    return _diagnose(source, Path(path).parent, functions, unsaved, thorough=thorough)
 
 
 def _diagnose(
-    source: Source, folder: Path, functions: PythonFunctions | None, *, thorough: bool
+    source: Source,
+    folder: Path,
+    functions: PythonFunctions | None,
+    unsaved: Mapping[str, str] = MappingProxyType({}),
+    *,
+    thorough: bool,
 ) -> tuple[Domain | None, Source, tuple[Diagnostic, ...]]:
-    domain, source, diagnostics = read_domain(source, folder)
-    if domain is not None:
-        checked = check_domain(domain, functions, thorough=thorough)
-        diagnostics = in_order((*diagnostics, *checked))
-    return (None if has_errors(diagnostics) else domain), source, diagnostics
+    read = read_domain(source, folder, unsaved)
+    diagnostics = read.diagnostics
+    if read.domain is not None:
+        checked = check_domain(read.domain, functions, thorough=thorough)
+        diagnostics = in_order((*diagnostics, *read.credible(checked)))
+    return (None if has_errors(diagnostics) else read.domain), read.source, diagnostics

@@ -243,6 +243,30 @@ def evaluate(
     return result
 
 
+def as_truth(value: Value | bool, test: Expression, path: str = "") -> bool:  # noqa: FBT001 - it is what is checked
+    """Give the answer of a test, which has to be true or false.
+
+    Raises:
+        InferenceError: It is a number or symbol, as only a Python function can give in a test.
+    """
+    if isinstance(value, bool):
+        return value
+    message = f"{test} came to {_name(value)}, but a test has to be true or false"
+    raise _failure(path, test.span, message)
+
+
+def as_value(value: Value | bool, expression: Expression, path: str = "") -> Value:  # noqa: FBT001 - it is what is checked
+    """Give what a bind computes, which has to be a number or symbol.
+
+    Raises:
+        InferenceError: It is a truth value, as only a Python function can give in a bind.
+    """
+    if not isinstance(value, bool):
+        return value
+    message = f"{expression} came to {_name(value)}, but a bind has to be a number or symbol"
+    raise _failure(path, expression.span, message)
+
+
 def _junction(
     call: Call, bindings: Mapping[str, Value], functions: PythonFunctions, path: str
 ) -> bool:
@@ -300,13 +324,21 @@ def _call_python(
         # The host's function may raise anything; the user needs to know which clause called it.
         message = f"the Python function in {shown} failed: {type(error).__name__}: {error}"
         raise _failure(path, call.span, message) from error
-    given: object = result  # annotations of the host's function are no proof
+    given: object = _plain(result)  # annotations of the host's function are no proof
     if not isinstance(given, str | int | float):
-        message = f"{shown} returned {type(given).__name__}, not a number, symbol or boolean"
+        message = f"{shown} returned {type(given).__name__}, not a number, symbol or truth value"
         raise _failure(path, call.span, message)
     if not isinstance(given, bool):
         _check_finite(given, call, values, path)
     return given
+
+
+def _plain(result: object) -> object:
+    """Give the Python value that a numpy scalar stands for; everything else as it is."""
+    if isinstance(result, str | int | float) or getattr(result, "shape", None) != ():
+        return result
+    item = getattr(result, "item", None)
+    return item() if callable(item) else result
 
 
 def _check_finite(result: Value, call: Call, values: list[Value | bool], path: str) -> None:

@@ -41,6 +41,7 @@ _TOKENS: Mapping[Role, _TokenType] = MappingProxyType(
         Role.NUMBER: Number,
         Role.STRING: String,
         Role.NAME: Name.Namespace,
+        Role.MOMENT: Keyword.Constant,
         Role.COMMENT: Comment,
         Role.PARENTHESIS: Punctuation,
         Role.ILLEGAL: Error,

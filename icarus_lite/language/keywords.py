@@ -24,6 +24,7 @@ class Content(Enum):
     SKILLS = auto()  # calls or observations of skills
     SUPERTYPE = auto()  # the name of a percept type
     CYCLES = auto()  # lists of fields, each for one cycle
+    MOMENTS = auto()  # when a breakpoint stops a run
     TERMS = auto()  # variables, symbols, strings, numbers
 
 
@@ -51,6 +52,10 @@ def _table(*keywords: Keyword) -> Mapping[str, Keyword]:
 def _older(name: str, modern: Keyword) -> Keyword:
     text = f"An older name of `{modern.name}`. {modern.documentation}"
     return Keyword(name, modern.content, text, modern.name)
+
+
+def _moment(name: str, documentation: str) -> Keyword:
+    return Keyword(name, Content.MOMENTS, documentation)
 
 
 _CONCEPTS = Keyword(
@@ -92,7 +97,8 @@ FORMS: Mapping[str, Keyword] = _table(
     Keyword(
         "break",
         Content.CONDITIONS,
-        "Where a run is to stop: when all of it is believed. Checked, not acted on yet.",
+        "Where a run is to stop: when one of the literals begins to hold, or one of the skills "
+        "starts. Checked, not acted on yet.",
     ),
     Keyword(
         "test",
@@ -141,6 +147,11 @@ FIELDS: Mapping[str, Keyword] = _table(
         "What is believed once the skill has succeeded, and with `not` no longer.",
     ),
     Keyword(":timeout", Content.TERMS, "The seconds after which the skill counts as failed."),
+    Keyword(
+        ":break",
+        Content.MOMENTS,
+        "When a run is to stop at this concept or skill. Checked, not acted on yet.",
+    ),
     Keyword(":until", Content.SKILLS, "The action that detaches again."),
     Keyword(":child", Content.TERMS, "The argument that moves with its parent while attached."),
     Keyword(":parent", Content.TERMS, "The argument that the child moves with."),
@@ -170,6 +181,21 @@ IN_CLAUSES: Mapping[str, Keyword] = _table(
     _older(":percepts", _ELEMENTS), _older(":action", _ACTIONS)
 )
 """Fields that are older names in the clauses of concepts and skills, and modern elsewhere."""
+
+MOMENTS: Mapping[str, Mapping[str, Keyword]] = MappingProxyType(
+    {
+        _CONCEPTS.name: _table(
+            _moment("on-gain", "When a belief with this head begins to hold."),
+            _moment("on-loss", "When a belief with this head ceases to hold."),
+        ),
+        _SKILLS.name: _table(
+            _moment("on-start", "When this skill starts."),
+            _moment("on-success", "When this skill has succeeded."),
+            _moment("on-failure", "When this skill has failed, or was broken off."),
+        ),
+    }
+)
+"""What `:break` may say, by the form of its clause."""
 
 NOT = Keyword(
     "not",

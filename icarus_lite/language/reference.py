@@ -14,7 +14,7 @@ from pathlib import Path
 
 from icarus_lite.language.diagnostics import CODES
 from icarus_lite.language.functions import FUNCTIONS
-from icarus_lite.language.keywords import FIELDS, FORMS, IN_CLAUSES, Keyword
+from icarus_lite.language.keywords import FIELDS, FORMS, IN_CLAUSES, MOMENTS, Keyword
 from icarus_lite.language.reading.older import GONE_FIELDS, GONE_FORMS
 
 _TABLE = re.compile(r"(<!-- table: ([a-z-]+) -->\n).*?(<!-- end -->)", re.DOTALL)
@@ -30,6 +30,14 @@ def tables() -> Mapping[str, str]:
     return {
         "forms": _table(("form", "what it is"), _documented(modern, "({} …)")),
         "fields": _table(("field", "what it is"), _documented(fields, "{}")),
+        "moments": _table(
+            ("moment", "of", "what it is"),
+            (
+                (f"`{name}`", f"a {form.removesuffix('s')}", moment.documentation)
+                for form, moments in MOMENTS.items()
+                for name, moment in moments.items()
+            ),
+        ),
         "older": _table(
             ("older name", "write"), ((f"`{each.name}`", f"`{each.modern}`") for each in older)
         ),

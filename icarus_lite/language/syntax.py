@@ -6,6 +6,7 @@ Spans never take part in comparison, so two trees are equal when they mean the s
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from enum import StrEnum
 from typing import TypeAlias
 
 from icarus_lite.symbols import Value, format_value
@@ -242,11 +243,30 @@ class LongTermGoal:
     span: Span = field(default=NOWHERE, compare=False)
 
 
+class Moment(StrEnum):
+    """When a breakpoint stops a run, by the word that `:break` has for it."""
+
+    GAIN = "on-gain"
+    LOSS = "on-loss"
+    START = "on-start"
+    SUCCESS = "on-success"
+    FAILURE = "on-failure"
+
+
 @dataclass(frozen=True, slots=True)
 class Breakpoint:
-    """A belief at which to stop: `(break (attached ?obj case))`."""
+    """Where to stop: `(break (attached ?obj case))`, or `:break on-gain` in a clause.
+
+    Args:
+        condition: A literal over beliefs, or the pattern of a skill.
+        moment: `GAIN` when an instance of the literal begins to hold and `LOSS` when it ceases
+            to; `START`, `SUCCESS` and `FAILURE` of a skill. The form gives `GAIN` for a literal
+            and `START` for a skill.
+        span: The literal of a form, or the word of a field.
+    """
 
     condition: Condition
+    moment: Moment = Moment.GAIN
     span: Span = field(default=NOWHERE, compare=False)
 
 

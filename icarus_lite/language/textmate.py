@@ -14,7 +14,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from icarus_lite.language.functions import FUNCTIONS
-from icarus_lite.language.keywords import FIELDS, FORMS, NOT
+from icarus_lite.language.keywords import FIELDS, FORMS, MOMENTS, NOT
 
 _NAME = r"[^\s()\"';?:^*|#]+"
 _END = r"(?=[\s()\"';]|$)"
@@ -64,6 +64,7 @@ def _patterns() -> list[dict[str, object]]:
             "support.function.icarus",
             rf"(?<=\(){_one_of(name for name in FUNCTIONS if name != NOT.name)}{_END}",
         ),
+        _match("constant.language.moment.icarus", _moments()),
         _match("support.function.command.icarus", rf"(?<=\()\*{_NAME}{_END}"),
         _match("variable.other.icarus", rf"\?{_NAME}{_END}"),
         _match("variable.other.property.icarus", rf"[\^*]{_NAME}{_END}"),
@@ -73,6 +74,12 @@ def _patterns() -> list[dict[str, object]]:
         _match("constant.other.symbol.icarus", rf"{_NAME}{_END}"),
         _match("punctuation.section.parens.icarus", r"[()]"),
     ]
+
+
+def _moments() -> str:
+    """Match what `:break` may say; behind a parenthesis, only where no pattern can be meant."""
+    names = _one_of(name for moments in MOMENTS.values() for name in moments)
+    return rf"(?:(?<!\(){names}{_END}|(?<=\(){names}(?=\s*\)|\s+{names}{_END}))"
 
 
 def _match(scope: str, pattern: str) -> dict[str, object]:

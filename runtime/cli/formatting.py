@@ -98,7 +98,7 @@ def _format(path: str, *, modernize: bool) -> _Formatted | None:
         else:
             typer.echo(f"{shown}: the file cannot be read: {reason_of(error)}", err=True)
         return None
-    _, problems = read_forms(source)
+    problems = read_forms(source).problems
     for found in problems:
         typer.echo(render(found, source), err=True)
     if problems:

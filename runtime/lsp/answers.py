@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from types import MappingProxyType
 
 from lsprotocol import types
@@ -10,6 +10,7 @@ from lsprotocol import types
 from icarus_lite.language.editing import (
     Entry,
     EntryKind,
+    File,
     Located,
     Role,
     Thing,
@@ -18,6 +19,7 @@ from icarus_lite.language.editing import (
     outline,
     rename,
     renameable,
+    signature,
 )
 from runtime.lsp.documents import Project
 from runtime.lsp.positions import Positions
@@ -27,6 +29,7 @@ _COMPLETION_KINDS: Mapping[Role, types.CompletionItemKind] = MappingProxyType(
         Role.FORM: types.CompletionItemKind.Keyword,
         Role.FIELD: types.CompletionItemKind.Keyword,
         Role.NOT: types.CompletionItemKind.Operator,
+        Role.MOMENT: types.CompletionItemKind.Keyword,
         Role.PREDICATE: types.CompletionItemKind.Class,
         Role.SKILL: types.CompletionItemKind.Method,
         Role.COMMAND: types.CompletionItemKind.Event,
@@ -147,6 +150,54 @@ def symbols(project: Project) -> list[types.DocumentSymbol]:
     positions = project.positions()
     words = project.index.words(project.path)
     return [_symbol(entry, positions) for entry in outline(words)]
+
+
+def workspace_symbols(
+    files: Iterable[tuple[File, str]], query: str, encoding: types.PositionEncodingKind | str
+) -> list[types.WorkspaceSymbol]:
+    """Give what the open texts, and those that they include, define under a name.
+
+    Args:
+        files: The texts, each with its URI.
+        query: Letters that the name has in this order, whatever their case; all names if empty.
+        encoding: What the columns of positions count.
+    """
+    found = []
+    for file, uri in files:
+        positions = Positions(file.text, encoding)
+        for form in outline(file.words):
+            for entry in form.children or (form,):
+                if entry.name and _has_letters(entry.name, query):
+                    place = types.Location(uri, positions.range(entry.name_start, entry.name_stop))
+                    inside = form.name if entry is not form else None
+                    kind = _SYMBOL_KINDS[entry.kind]
+                    found.append(
+                        types.WorkspaceSymbol(
+                            location=place, name=entry.name, kind=kind, container_name=inside
+                        )
+                    )
+    return found
+
+
+def _has_letters(name: str, query: str) -> bool:
+    letters = iter(name.casefold())
+    return all(letter in letters for letter in query.casefold())
+
+
+def signature_help(project: Project, position: types.Position) -> types.SignatureHelp | None:
+    """Say what the pattern that is being written takes."""
+    found = signature(project.index, project.path, project.offset(position))
+    if found is None:
+        return None
+    label = Positions(found.label, types.PositionEncodingKind.Utf16)
+    parameters = [
+        types.ParameterInformation((label.length(0, start), label.length(0, stop)))
+        for start, stop in found.parameters
+    ]
+    information = types.SignatureInformation(
+        found.label, _markdown(found.documentation), parameters, found.active
+    )
+    return types.SignatureHelp([information], 0, found.active)
 
 
 def formatting(project: Project) -> list[types.TextEdit]:

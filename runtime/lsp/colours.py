@@ -18,6 +18,7 @@ _TYPES: Mapping[Role, types.SemanticTokenTypes] = MappingProxyType(
         Role.FORM: types.SemanticTokenTypes.Keyword,
         Role.FIELD: types.SemanticTokenTypes.Keyword,
         Role.NOT: types.SemanticTokenTypes.Keyword,
+        Role.MOMENT: types.SemanticTokenTypes.Keyword,
         Role.PREDICATE: types.SemanticTokenTypes.Class,
         Role.SKILL: types.SemanticTokenTypes.Method,
         Role.COMMAND: types.SemanticTokenTypes.Macro,

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from operator import is_not
 from pathlib import Path
 
@@ -29,12 +29,14 @@ class Project:
         index: The text, what it includes, and the open texts that include it.
         uris: The URI of each file by its path.
         encoding: What the columns of positions count.
+        unsaved: The texts that are open, by the paths of their files.
     """
 
     path: str
     index: Index
     uris: dict[str, str]
     encoding: types.PositionEncodingKind | str
+    unsaved: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def text(self) -> str:
@@ -69,7 +71,30 @@ class Documents:
                 files |= around
         links = {each: opened.get(each) or uris.from_fs_path(each) or each for each in files}
         encoding = workspace.position_encoding or types.PositionEncodingKind.Utf16
-        return Project(path, self._index(tuple(files.values())), links, encoding)
+        index = self._index(tuple(files.values()))
+        unsaved = {each: _text(workspace, each, opened) or "" for each in opened}
+        return Project(path, index, links, encoding, unsaved)
+
+    def includers(self, workspace: Workspace, uri: str) -> tuple[str, ...]:
+        """Give the URIs of the open texts that include a file, directly or through others."""
+        opened = {path_of(each): each for each in workspace.text_documents}
+        path = path_of(uri)
+        return tuple(
+            opened[other]
+            for other in opened
+            if other != path
+            and any(file.path == path for file in self._with_includes(workspace, other, opened))
+        )
+
+    def everything(self, workspace: Workspace) -> Iterator[tuple[File, str]]:
+        """Give each open text and each file that one includes, once, with its URI."""
+        opened = {path_of(each): each for each in workspace.text_documents}
+        seen: set[str] = set()
+        for path in opened:
+            for file in self._with_includes(workspace, path, opened):
+                if file.path not in seen:
+                    seen.add(file.path)
+                    yield file, opened.get(file.path) or uris.from_fs_path(file.path) or file.path
 
     def file(self, path: str, text: str) -> File:
         """Give a text as read, from memory if it is the same as last time."""

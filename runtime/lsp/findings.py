@@ -29,18 +29,25 @@ _TAGS: Mapping[str, types.DiagnosticTag] = MappingProxyType(
 
 def findings(project: Project) -> list[types.Diagnostic]:
     """Check an open text; what is wrong in files that it includes is told where it does so."""
-    _, _, found = diagnose_text(project.text, project.path, thorough=True)
+    found = diagnosed(project)
     own = [each for each in found if each.path == project.path]
     others: dict[str, list[Diagnostic]] = {}
     for each in found:
         if each.path != project.path and each.severity is Severity.ERROR:
             others.setdefault(each.path, []).append(each)
     lines = Lines(project.text)
-    here = [_diagnostic(project, lines, each) for each in own]
+    here = [diagnostic(project, lines, each) for each in own]
     return here + [_about_include(project, path, each) for path, each in others.items()]
 
 
-def _diagnostic(project: Project, lines: Lines, found: Diagnostic) -> types.Diagnostic:
+def diagnosed(project: Project) -> tuple[Diagnostic, ...]:
+    """Check an open text; files that it includes count as they are in the editor."""
+    text, path = project.text, project.path
+    return diagnose_text(text, path, thorough=True, unsaved=project.unsaved)[2]
+
+
+def diagnostic(project: Project, lines: Lines, found: Diagnostic) -> types.Diagnostic:
+    """Give a finding about an open text as the protocol has it."""
     span = found.span
     start = stop = 0
     if span.line:

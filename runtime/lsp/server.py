@@ -13,6 +13,7 @@ from pygls.lsp.server import LanguageServer
 from icarus_lite import __version__
 from icarus_lite.language.editing import RenameError
 from runtime.lsp import answers
+from runtime.lsp.actions import KINDS, code_actions
 from runtime.lsp.colours import LEGEND, semantic_tokens
 from runtime.lsp.documents import Documents, Project
 from runtime.lsp.findings import findings
@@ -51,6 +52,13 @@ def make_server(commands: Collection[str] = ()) -> LanguageServer:
     _add_checking(server, documents, project)
     _add_reading(server, project, commands)
     _add_writing(server, project, commands)
+
+    @server.feature(types.WORKSPACE_SYMBOL)
+    def workspace_symbols(params: types.WorkspaceSymbolParams) -> list[types.WorkspaceSymbol]:
+        files = documents.everything(server.workspace)
+        encoding = server.workspace.position_encoding or types.PositionEncodingKind.Utf16
+        return answers.workspace_symbols(files, params.query, encoding)
+
     return server
 
 
@@ -66,13 +74,19 @@ def _add_checking(
             types.PublishDiagnosticsParams(uri, found, version)
         )
 
+    def check_includers(uri: str) -> None:
+        for each in documents.includers(server.workspace, uri):
+            check(each)
+
     @server.feature(types.TEXT_DOCUMENT_DID_OPEN)
     def did_open(params: types.DidOpenTextDocumentParams) -> None:
         check(params.text_document.uri)
+        check_includers(params.text_document.uri)
 
     @server.feature(types.TEXT_DOCUMENT_DID_CHANGE)
     def did_change(params: types.DidChangeTextDocumentParams) -> None:
         check(params.text_document.uri)
+        check_includers(params.text_document.uri)
 
     @server.feature(types.TEXT_DOCUMENT_DID_SAVE)
     def did_save(params: types.DidSaveTextDocumentParams) -> None:
@@ -85,6 +99,7 @@ def _add_checking(
         uri = params.text_document.uri
         documents.forget(uri)
         server.text_document_publish_diagnostics(types.PublishDiagnosticsParams(uri, []))
+        check_includers(uri)  # for them the file is again as it is on the disk
 
 
 def _add_reading(
@@ -140,6 +155,16 @@ def _add_writing(
     def rename(params: types.RenameParams) -> types.WorkspaceEdit:
         where = project(params.text_document.uri)
         return _or_refuse(lambda: answers.renaming(where, params.position, params.new_name))
+
+    @server.feature(types.TEXT_DOCUMENT_CODE_ACTION, types.CodeActionOptions(list(KINDS)))
+    def actions(params: types.CodeActionParams) -> list[types.CodeAction]:
+        return code_actions(project(params.text_document.uri), params)
+
+    @server.feature(
+        types.TEXT_DOCUMENT_SIGNATURE_HELP, types.SignatureHelpOptions(trigger_characters=[" "])
+    )
+    def signature_help(params: types.SignatureHelpParams) -> types.SignatureHelp | None:
+        return answers.signature_help(project(params.text_document.uri), params.position)
 
     @server.feature(types.TEXT_DOCUMENT_FORMATTING)
     def formatting(params: types.DocumentFormattingParams) -> list[types.TextEdit]:

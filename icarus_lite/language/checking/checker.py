@@ -81,8 +81,11 @@ class _Check:
         self._patterns.conditions(self._domain.goals)
         for goal in self._domain.long_term_goals:
             self._patterns.conditions((*goal.goals, *goal.relevance))
+        heads = {clause.head for clause in self._domain.concepts}
+        heads |= {clause.head for clause in self._domain.skills}
         for stop in self._domain.breakpoints:
-            self._breakpoint(stop.condition)
+            if stop.condition.atom not in heads:  # a head is checked with its clause
+                self._breakpoint(stop.condition)
         for test in self._domain.tests:
             self._test(test)
         self._analyse(thorough=thorough)
@@ -152,7 +155,9 @@ class _Check:
             self._report.error(
                 self._report.name_of(head), "ICR022", f"the skill `{name}` has {has}", hint
             )
-        self._patterns.conditions((*clause.elements, *clause.holds, *clause.effects))
+        self._patterns.conditions((*clause.elements, *clause.holds))
+        for effect in clause.effects:
+            self._patterns.effect(effect.atom)
         self._expressions(clause.tests)
         for command in clause.actions:
             self._patterns.no_attributes(command)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from icarus_lite.language.checking.report import Report
@@ -19,6 +20,7 @@ _OTHER_NAMES = {
     "=<": "<=",
     "=>": ">=",
 }
+_NUMBER_WITH_UNIT = re.compile(r"([+-]?(?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+))([a-zA-Z°%]{0,4})")
 _WANTED = {Kind.NUMBER: "numbers", Kind.BOOLEAN: "tests", Kind.ANY: "symbols, strings or numbers"}
 
 
@@ -76,6 +78,8 @@ def _check_call(
         hint = "a predicate belongs in :elements; a Python function must be given when loading"
         if call.function in predicates:
             hint = "it is perceived or believed: a pattern over it belongs in :elements"
+        elif call.args and str(call.args[0]) in functions:
+            hint = f"the function comes first: ({call.args[0]} {call.function} …)"
         elif meant:
             hint = f"did you mean `{meant}`? {hint}"
         report.error(_name_span(call), "ICR016", f"there is no function `{call.function}`", hint)
@@ -107,7 +111,21 @@ def _check_argument(
             return
         given = f"{argument} is a value"
     message = f"`{function.name}` takes {_WANTED[function.takes]}, but {given}"
-    report.error(argument.span, "ICR017", message, function.documentation)
+    hint = function.documentation
+    if function.takes is Kind.NUMBER and isinstance(argument, Constant):
+        hint = _as_number(str(argument.value)) or hint
+    report.error(argument.span, "ICR017", message, hint)
+
+
+def _as_number(text: str) -> str:
+    """Say how a number is written that was written in another way, or nothing."""
+    plain = text.replace(",", ".").replace("\N{EN DASH}", "-").replace("\N{MINUS SIGN}", "-")
+    match = _NUMBER_WITH_UNIT.fullmatch(plain)
+    if match is None:
+        return ""
+    if match[2]:
+        return "a number has no unit: write it in the unit of what it is compared with"
+    return f"the number is written {match[1]}"
 
 
 def _name_span(call: Call) -> Span:

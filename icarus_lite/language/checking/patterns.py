@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
+from typing import Final
 
 from icarus_lite.language.checking.report import Report
 from icarus_lite.language.checking.vocabulary import Definition, Origin, Vocabulary
-from icarus_lite.language.functions import Function
+from icarus_lite.language.functions import FUNCTIONS, Function
 from icarus_lite.language.percept_types import lineages
 from icarus_lite.language.reading.explanations import listing
 from icarus_lite.language.syntax import Atom, Condition, Constant, Domain
 
 _MOST_HOLDERS = 50
+_OPERATORS: Final = frozenset(name for name in FUNCTIONS if not name.isalpha()) | {"and", "or"}
 
 
 class Patterns:
@@ -49,6 +51,7 @@ class Patterns:
     def pattern(self, atom: Atom) -> None:
         """Check predicate, number of arguments and attributes of a pattern over beliefs."""
         self.attributes_once(atom)
+        self._anything(atom)
         definitions = self._names.predicates.get(atom.predicate, ())
         known = self._attributes(atom.predicate)
         unknown = [name for name, _ in atom.attributes if name not in known]
@@ -62,6 +65,21 @@ class Patterns:
             self.wrong_arity(atom, definitions[0].arity, self._shape(atom, definitions[0]))
         for name in unknown:
             self._unknown_attribute(atom, name, tuple(known))
+
+    def effect(self, atom: Atom) -> None:
+        """Check a pattern that is to be believed: it can neither compare nor compute."""
+        if atom.predicate in _OPERATORS and not self.defined(atom.predicate, Origin.CONCEPT):
+            message = f"`{atom.predicate}` is a function, and an effect is a belief"
+            hint = "state what will be believed, such as (on ?obj shelf); concepts can compare"
+            self._report.error(self._report.name_of(atom), "ICR047", message, hint)
+        else:
+            self.pattern(atom)
+
+    def _anything(self, atom: Atom) -> None:
+        for term in (*atom.args, *(value for _, value in atom.attributes)):
+            if isinstance(term, Constant) and term.value == "_":
+                message = "`_` is a name here, which matches nothing but itself"
+                self._report.warning(term.span, "ICR047", message, "write ?_ for anything")
 
     def _assume_percept(self, atom: Atom, undefined: Sequence[str]) -> None:
         """Let a domain without percept declarations, as older ones are, name what it perceives."""
@@ -179,10 +197,10 @@ def _defined_where(definition: Definition) -> str:
 
 
 def _unmarked(atom: Atom, attributes: Collection[str]) -> Atom | None:
-    """Read `(object ?o type plug)` as `(object ?o ^type plug)` if it can be meant so."""
+    """Read `(object ?o type plug)`, or with `?type`, as `(object ?o ^type plug)` if it can be."""
     names, values = atom.args[1::2], atom.args[2::2]
-    keys = [str(name.value) for name in names if isinstance(name, Constant)]
-    complete = 0 < len(names) == len(keys) == len(values)
+    keys = [str(name).lstrip("?") for name in names]
+    complete = 0 < len(names) == len(values)
     if not complete or not set(keys) <= set(attributes):
         return None
     pairs = (*zip(keys, values, strict=True), *atom.attributes)

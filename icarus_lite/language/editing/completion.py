@@ -10,10 +10,10 @@ from icarus_lite.language.editing.descriptions import kinds_of
 from icarus_lite.language.editing.expectations import accepted, keyword_terminals
 from icarus_lite.language.editing.index import Index, Thing
 from icarus_lite.language.editing.lexemes import Kind, Lexeme, lexemes
-from icarus_lite.language.editing.nesting import Group, Node, nest
+from icarus_lite.language.editing.nesting import Group, nest, open_groups
 from icarus_lite.language.editing.occurrences import Occurrence, Place, Role, occurrences
 from icarus_lite.language.functions import FUNCTIONS, Function
-from icarus_lite.language.keywords import FORMS, NOT, field_named
+from icarus_lite.language.keywords import FORMS, MOMENTS, NOT, field_named
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +69,7 @@ def complete(
     else:
         start, stop = typed.start, typed.stop
     before = [word for word in words if word.stop <= start]
-    chain = _open_groups(nest(text, before))
+    chain = open_groups(nest(text, before))
     if not chain:
         return Completion(start, stop, ())
     moment = _Moment(index, path, text[:start], text[start:offset], chain, commands, functions)
@@ -82,15 +82,6 @@ def _is_prose(word: Lexeme, offset: int) -> bool:
     if word.kind is Kind.COMMENT:
         return offset < word.stop or word.text.startswith(";")
     return word.text.startswith('"') and (offset < word.stop or word.kind is Kind.ILLEGAL)
-
-
-def _open_groups(forest: Sequence[Node]) -> list[Group]:
-    chain: list[Group] = []
-    items: Sequence[Node] = forest
-    while items and isinstance(items[-1], Group) and items[-1].closing is None:
-        chain.append(items[-1])
-        items = items[-1].items
-    return chain
 
 
 def _fits(proposal: str, typed: str) -> bool:
@@ -172,6 +163,9 @@ class _Moment:
 
     def _symbols(self) -> Iterator[Proposal]:
         word = self._would_be("x")
+        if word.place.field == ":break":
+            yield from self._moments(word.place.form)
+            return
         match word.role:
             case Role.PREDICATE if word.place.form != "percepts" or word.place.field:
                 yield from self._predicates(word.place)
@@ -187,6 +181,12 @@ class _Moment:
                 for value in self.index.values(attribute) if attribute else ():
                     if value != self.typed:
                         yield Proposal(value, Role.SYMBOL, f"value of ^{word.attribute}")
+
+    def _moments(self, form: str) -> Iterator[Proposal]:
+        given = {item.text for item in self.chain[-1].items if isinstance(item, Lexeme)}
+        for moment in MOMENTS.get(form, {}).values():
+            if moment.name not in given:
+                yield Proposal(moment.name, Role.MOMENT, "moment", moment.documentation)
 
     def _attribute_of(self, value: Occurrence) -> Occurrence:
         return Occurrence(Role.ATTRIBUTE, value.attribute, 0, 0, value.place, value.owner)

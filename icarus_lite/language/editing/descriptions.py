@@ -10,7 +10,7 @@ from icarus_lite.language.checking.vocabulary import ATTACHED, Origin
 from icarus_lite.language.editing.index import Index, Located, Thing
 from icarus_lite.language.editing.occurrences import Occurrence, Role
 from icarus_lite.language.functions import FUNCTIONS, Function
-from icarus_lite.language.keywords import FORMS, NOT, Keyword, field_named
+from icarus_lite.language.keywords import FORMS, MOMENTS, NOT, Keyword, field_named
 from icarus_lite.language.reading.explanations import listing
 
 _MOST_CLAUSES = 4
@@ -49,7 +49,7 @@ def describe(
         Markdown, or an empty text if there is nothing to say.
     """
     match word.role:
-        case Role.FORM | Role.FIELD | Role.NOT:
+        case Role.FORM | Role.FIELD | Role.NOT | Role.MOMENT:
             return _keyword(word)
         case Role.FUNCTION:
             return _function(functions.get(word.name))
@@ -87,6 +87,8 @@ def _keyword(word: Occurrence) -> str:
             keyword, kind = NOT, "negation"
         case Role.FORM:
             keyword, kind = FORMS.get(word.name), "form"
+        case Role.MOMENT:
+            keyword, kind = MOMENTS[word.place.form].get(word.name), "moment to stop at"
         case _:
             keyword, kind = field_named(word.name, word.place.form), "field"
     return f"**`{word.name}`** · {kind}\n\n{keyword.documentation}" if keyword else ""

@@ -51,6 +51,22 @@ def nest(text: str, words: Sequence[Lexeme]) -> tuple[Node, ...]:
     return _nest(words, _margins(text, words))[0] if is_open else forest
 
 
+def open_groups(forest: Sequence[Node]) -> list[Group]:
+    """Give the groups that are open at the end, outermost first."""
+    chain: list[Group] = []
+    items: Sequence[Node] = forest
+    while items and isinstance(items[-1], Group) and items[-1].closing is None:
+        chain.append(items[-1])
+        items = items[-1].items
+    return chain
+
+
+def innermost(forest: Sequence[Node]) -> Group | None:
+    """Give the innermost group that is open at the end."""
+    chain = open_groups(forest)
+    return chain[-1] if chain else None
+
+
 def _nest(words: Sequence[Lexeme], margins: frozenset[int]) -> tuple[tuple[Node, ...], bool]:
     forest: list[Node] = []
     stack: list[Group] = []

@@ -12,7 +12,7 @@ from enum import StrEnum
 
 from icarus_lite.language.editing.lexemes import Kind, Lexeme, lexemes
 from icarus_lite.language.editing.nesting import Group, Node, nest
-from icarus_lite.language.keywords import FIELDS, FORMS, NOT, Content, field_named
+from icarus_lite.language.keywords import FIELDS, FORMS, MOMENTS, NOT, Content, field_named
 
 
 class Role(StrEnum):
@@ -31,6 +31,7 @@ class Role(StrEnum):
     NUMBER = "number"
     STRING = "string"
     NAME = "name"
+    MOMENT = "moment"
     COMMENT = "comment"
     PARENTHESIS = "parenthesis"
     ILLEGAL = "illegal"
@@ -209,7 +210,10 @@ def _fields(items: Sequence[Node], place: Place) -> Iterator[Occurrence]:
 def _entries(values: Sequence[Node], place: Place, content: Content) -> Iterator[Occurrence]:
     """Read the values of a field: entries one after another, or a list of them."""
     for value in values:
-        if isinstance(value, Lexeme):
+        if content is Content.MOMENTS:
+            for word in value.items if isinstance(value, Group) else (value,):
+                yield from _moment(word, place)
+        elif isinstance(value, Lexeme):
             yield from _term(value, place)
         elif isinstance(value.items[0] if value.items else None, Group):
             for entry in value.items:
@@ -295,6 +299,15 @@ def _term(word: Lexeme, place: Place, owner: str = "", attribute: str = "") -> I
     if role is not None:
         name = word.text[1:] if role is Role.ATTRIBUTE else word.text
         yield Occurrence(role, name, word.start, word.stop, place, owner, attribute)
+
+
+def _moment(word: Node, place: Place) -> Iterator[Occurrence]:
+    if not isinstance(word, Lexeme):
+        return
+    if word.text in MOMENTS.get(place.form, ()):
+        yield Occurrence(Role.MOMENT, word.text, word.start, word.stop, place)
+    else:
+        yield from _term(word, place)
 
 
 def _word(

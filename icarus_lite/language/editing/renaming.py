@@ -15,6 +15,7 @@ _REASONS = {
     Role.FORM: "`{name}` is a word of the language",
     Role.FIELD: "`{name}` is a word of the language",
     Role.NOT: "`{name}` is a word of the language",
+    Role.MOMENT: "`{name}` is a word of the language",
     Role.FUNCTION: "`{name}` is a function of the language",
     Role.COMMAND: "`*{name}` is a command of the driver, which gives it its name",
     Role.SYMBOL: "`{name}` is a value: percepts carry it, so that only its source can rename it",

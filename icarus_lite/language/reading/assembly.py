@@ -10,6 +10,7 @@ from typing import TypeVar
 from icarus_lite.language.checking.report import Report
 from icarus_lite.language.diagnostics import Diagnostic
 from icarus_lite.language.older_names import MODERN_FIELDS, MODERN_FORMS
+from icarus_lite.language.reading.breakpoints import breakpoints_of_clause, timed
 from icarus_lite.language.reading.parts import Clause, Command, Field, Form, Group, Problem, Word
 from icarus_lite.language.syntax import (
     Atom,
@@ -103,6 +104,7 @@ class _Draft:
 
     def domain(self) -> Domain:
         """Give the domain as it stands."""
+        skills = {skill.head.predicate for skill in self.skills}
         return Domain(
             name=self.name.text if self.name else _name_from(self.report.source.path),
             documentation=self.documentation,
@@ -114,7 +116,7 @@ class _Draft:
             goals=tuple(self.goals),
             tests=tuple(self.tests),
             long_term_goals=tuple(self.long_term_goals),
-            breakpoints=tuple(self.breakpoints),
+            breakpoints=tuple([timed(each, skills) for each in self.breakpoints]),
             source=self.report.source,
         )
 
@@ -133,6 +135,7 @@ class _Draft:
 
     def _concept(self, clause: Clause) -> ConceptClause:
         fields = self._fields(clause.fields)
+        self._add_moments("concepts", clause, fields)
         return ConceptClause(
             head=clause.head,
             elements=_values(fields, ":elements", Condition),
@@ -154,6 +157,7 @@ class _Draft:
                     f"write (*{name} …); skills are called in :subskills",
                 )
         timeout = _values(fields, ":timeout", Constant)
+        self._add_moments("skills", clause, fields)
         return SkillClause(
             head=clause.head,
             elements=_values(fields, ":elements", Condition),
@@ -232,9 +236,22 @@ class _Draft:
             message = "a break form names no belief to stop at"
             hint = "name one: (break (attached ?obj case))"
             self.report.error(form.keyword.span, "ICR011", message, hint)
-        else:
-            self._note_idle(form.keyword.span, "breakpoints", "a run does not stop there")
-        self.breakpoints += [Breakpoint(each, each.span) for each in conditions]
+            return
+        self._note_breakpoints(form.keyword.span)
+        self.breakpoints += [Breakpoint(each, span=each.span) for each in conditions]
+
+    def _add_moments(
+        self, form: str, clause: Clause, fields: Mapping[str, Iterable[object]]
+    ) -> None:
+        words = _values(fields, ":break", Word)
+        found = breakpoints_of_clause(form, clause, words, self.report)
+        if found:
+            self._note_breakpoints(found[0].span)
+        self.breakpoints += found
+
+    def _note_breakpoints(self, span: Span) -> None:
+        if not self.breakpoints:  # once is enough
+            self._note_idle(span, "breakpoints", "a run does not stop there")
 
     def _add_problems(self, form: Form) -> None:
         problems = [item for item in form.items if isinstance(item, Problem)]

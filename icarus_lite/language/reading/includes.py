@@ -9,20 +9,21 @@ from __future__ import annotations
 
 import dataclasses
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from types import MappingProxyType
 from typing import TypeAlias, TypeVar, cast
 
 from icarus_lite.language.diagnostics import Diagnostic, DomainError, Severity
-from icarus_lite.language.reading.parts import Form, Word
+from icarus_lite.language.reading.parts import Form, Outcome, Word
 from icarus_lite.language.reading.sources import read_source, reason_of
 from icarus_lite.language.syntax import Source, Span
 
 MAX_INCLUDES = 30
 """How long a chain of files may be of which each includes the next."""
 
-ReadForms: TypeAlias = Callable[[Source], tuple[tuple[Form, ...], list[Diagnostic]]]
+ReadForms: TypeAlias = Callable[[Source], Outcome]
 """Gives the forms of a text, and what keeps it from being read."""
 
 _Node = TypeVar("_Node")
@@ -33,9 +34,32 @@ def includes(forms: Iterable[Form]) -> bool:
     return any(form.keyword.text == "include" for form in forms)
 
 
+@dataclass(frozen=True, slots=True)
+class Expansion:
+    """The forms of a domain with those that it includes.
+
+    Args:
+        forms: All forms, in the place of the includes where they come from another file.
+        source: The text together with those included.
+        problems: What is wrong with includes, and in included files.
+        mended: The lines of included files in which parentheses were mended, with the file.
+        is_whole: Whether the forms of every included file are there.
+    """
+
+    forms: tuple[Form, ...]
+    source: Source
+    problems: tuple[Diagnostic, ...]
+    mended: frozenset[tuple[str, int]]
+    is_whole: bool
+
+
 def expand(
-    forms: tuple[Form, ...], source: Source, folder: Path | None, read: ReadForms
-) -> tuple[tuple[Form, ...], Source, list[Diagnostic]]:
+    forms: tuple[Form, ...],
+    source: Source,
+    folder: Path | None,
+    read: ReadForms,
+    unsaved: Mapping[str, str] = MappingProxyType({}),
+) -> Expansion:
     """Put the forms of included files in the place of the includes.
 
     Args:
@@ -43,19 +67,19 @@ def expand(
         source: Its text.
         folder: The folder in which it lies; None if it is no file.
         read: What turns a text into forms.
-
-    Returns:
-        All forms, the text together with those included, and errors about includes.
+        unsaved: Texts that count instead of what is on the disk, by their real paths.
     """
-    inclusion = _Inclusion(read, folder)
+    inclusion = _Inclusion(read, folder, unsaved)
     own = _File(source.path, folder, ())
     if folder is not None:
         inclusion.open_files.append(os.path.realpath(folder / Path(source.path).name))
     expanded = inclusion.expand(forms, own)
-    return (
+    return Expansion(
         tuple(expanded),
         dataclasses.replace(source, included=tuple(inclusion.sources)),
-        inclusion.problems,
+        tuple(inclusion.problems),
+        frozenset(inclusion.mended),
+        inclusion.is_whole,
     )
 
 
@@ -74,10 +98,13 @@ class _Inclusion:
 
     read: ReadForms
     root: Path | None
+    unsaved: Mapping[str, str]
     sources: list[Source] = field(default_factory=list)
     problems: list[Diagnostic] = field(default_factory=list)
     open_files: list[str] = field(default_factory=list)
     done: set[str] = field(default_factory=set)
+    mended: set[tuple[str, int]] = field(default_factory=set)
+    is_whole: bool = True
 
     def expand(self, forms: Iterable[Form], file: _File) -> list[Form]:
         """Give the forms with their includes followed."""
@@ -103,7 +130,8 @@ class _Inclusion:
         try:
             real = os.path.realpath(path)
             inside = Path(real).is_relative_to(os.path.realpath(self.root))
-            exists, is_file = os.path.lexists(real), Path(real).is_file()
+            exists = os.path.lexists(real)
+            is_file = real in self.unsaved or Path(real).is_file()
         except (OSError, ValueError) as error:
             self._refuse(name, file, f"{_quoted(name)} cannot be included: {reason_of(error)}", "")
             return []
@@ -141,21 +169,26 @@ class _Inclusion:
     def _read(self, path: Path, real: str, shown: str, file: _File) -> list[Form]:
         self.done.add(real)
         try:
-            source = read_source(path, shown)
+            text = self.unsaved.get(real)
+            source = read_source(path, shown) if text is None else Source(shown, text)
         except DomainError as error:
             self.sources.append(error.source)
             self.problems.extend(error.diagnostics)
+            self.is_whole = False
             return []
         self.sources.append(source)
-        forms, problems = self.read(source)
-        self.problems.extend(problems)
-        own = [relocate(form, shown) for form in forms if form.keyword.text != "domain"]
+        outcome = self.read(source)
+        self.problems.extend(outcome.problems)
+        self.mended |= {(shown, line) for line in outcome.mended}
+        self.is_whole &= outcome.is_whole
+        own = [relocate(form, shown) for form in outcome.forms if form.keyword.text != "domain"]
         self.open_files.append(real)
         expanded = self.expand(own, _File(shown, path.parent, (*file.chain, file.path)))
         self.open_files.pop()
         return expanded
 
     def _refuse(self, name: Word, file: _File, message: str, hint: str) -> None:
+        self.is_whole = False
         found = Diagnostic(file.path, name.span, Severity.ERROR, "ICR036", message, hint)
         self.problems.append(found)
 

@@ -30,6 +30,22 @@ GONE_FIELDS: Mapping[str, str] = MappingProxyType(
 )
 """Fields that are refused, each with the modern way."""
 
+_WHEN = "say when it may start in :elements"
+_WHAT = "say what will be believed in :effects, what no longer as (not (on ?a ?b))"
+
+PDDL_FIELDS: Mapping[str, str] = MappingProxyType(
+    {
+        ":add": _WHAT,
+        ":condition": _WHEN,
+        ":delete": _WHAT,
+        ":parameters": "the arguments stand in the head: ((move ?a ?b) :elements (…))",
+        ":precondition": _WHEN,
+        ":preconditions": _WHEN,
+        ":vars": "variables need no declaration; remove it",
+    }
+)
+"""Fields that people know from PDDL, each with what is written here."""
+
 GONE_FORMS: Mapping[str, str] = MappingProxyType(
     {
         "create-constraints": "goals are ordered by planning; state what must not hold as a goal "

@@ -235,6 +235,8 @@ class _Parts(Transformer[Token, tuple[Form, ...]]):
     def name(self, children: list[Any]) -> Word:
         return _word(children[0])
 
+    moment = name
+
     def variable(self, children: list[Any]) -> Variable:
         return Variable(str(children[0]), token_span(children[0]))
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TypeAlias
 
+from icarus_lite.language.diagnostics import Diagnostic
 from icarus_lite.language.syntax import (
     Atom,
     Bind,
@@ -90,6 +91,28 @@ class Form:
     words: tuple[Word, ...]
     items: tuple[FormItem, ...]
     span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What reading one text came to.
+
+    Args:
+        forms: The forms. With errors there are none, unless only parentheses were wrong: then they
+            are the forms that were probably meant.
+        problems: The errors.
+        mended: The lines in which parentheses were mended to get there. What else seems wrong in
+            them may come of that.
+    """
+
+    forms: tuple[Form, ...]
+    problems: tuple[Diagnostic, ...]
+    mended: frozenset[int] = frozenset()
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether all that the text says is there."""
+        return bool(self.forms) or not self.problems
 
 
 class MalformedTermError(Exception):

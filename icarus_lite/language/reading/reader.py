@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
+from types import MappingProxyType
 
 from icarus_lite.language.checking.silencing import unsilenced
 from icarus_lite.language.diagnostics import (
@@ -21,9 +24,11 @@ from icarus_lite.language.reading.brackets import (
     begins_nameless,
     scan,
 )
-from icarus_lite.language.reading.explanations import Stumble, explain, stands_inside
+from icarus_lite.language.reading.explanations import explain, stands_inside
 from icarus_lite.language.reading.includes import expand, includes
-from icarus_lite.language.reading.parts import Form, MalformedTermError
+from icarus_lite.language.reading.parentheses import Mended, mend_parentheses
+from icarus_lite.language.reading.parts import MalformedTermError, Outcome
+from icarus_lite.language.reading.stumbles import Stumble
 from icarus_lite.language.syntax import NOWHERE, Domain, Source, Span
 
 _EMPTY_HINT = "a domain begins with (domain NAME) and has (concepts …) and (skills …)"
@@ -43,33 +48,55 @@ def parse_domain(
         The domain, or None if there is an error among the diagnostics, and the diagnostics in
         the order of the text. Every form is read, so that one mistake does not hide the others.
     """
-    domain, _, diagnostics = read_domain(Source(path, text), folder)
-    return domain, diagnostics
+    read = read_domain(Source(path, text), folder)
+    return (None if has_errors(read.diagnostics) else read.domain), read.diagnostics
+
+
+@dataclass(frozen=True, slots=True)
+class DomainRead:
+    """A domain as far as it could be read.
+
+    Args:
+        domain: The domain. Where only parentheses were wrong, it is the one that was probably
+            meant: with errors among the diagnostics it may be checked, but not used.
+        source: Its text, with those it includes.
+        diagnostics: What there is to say so far, in the order of the text.
+        mended: The files and lines in which parentheses were mended.
+    """
+
+    domain: Domain | None
+    source: Source
+    diagnostics: tuple[Diagnostic, ...]
+    mended: frozenset[tuple[str, int]] = frozenset()
+
+    def credible(self, found: Iterable[Diagnostic]) -> list[Diagnostic]:
+        """Leave out what may come of parentheses that were mended in the same line."""
+        return [each for each in found if (each.path, each.span.line) not in self.mended]
 
 
 def read_domain(
-    source: Source, folder: Path | None
-) -> tuple[Domain | None, Source, tuple[Diagnostic, ...]]:
+    source: Source, folder: Path | None, unsaved: Mapping[str, str] = MappingProxyType({})
+) -> DomainRead:
     """Read a domain as `parse_domain` does, and give its text with those it includes as well."""
-    forms, problems = read_forms(source)
+    outcome = read_forms(source)
+    forms, problems, is_whole = outcome.forms, outcome.problems, outcome.is_whole
+    mended = frozenset((source.path, line) for line in outcome.mended)
     if includes(forms):
-        forms, source, unreadable = expand(forms, source, folder, read_forms)
-        problems = [*problems, *unreadable]
-    if has_errors(problems):
-        return None, source, in_order(problems)
+        expansion = expand(forms, source, folder, read_forms, unsaved)
+        forms, source, is_whole = expansion.forms, expansion.source, expansion.is_whole
+        problems, mended = (*problems, *expansion.problems), mended | expansion.mended
+    if not is_whole:
+        return DomainRead(None, source, in_order(problems), mended)
     if not forms:
-        return None, source, (_empty(source.path, _EMPTY_HINT),)
+        return DomainRead(None, source, (_empty(source.path, _EMPTY_HINT),))
     domain, remarks = assemble(forms, source)
-    domain_or_none = None if has_errors(remarks) else domain
-    return domain_or_none, source, unsilenced(in_order(remarks), source)
+    remarks = unsilenced(in_order(remarks), source)
+    read = DomainRead(None if has_errors(remarks) else domain, source, (), mended)
+    return replace(read, diagnostics=in_order((*problems, *read.credible(remarks))))
 
 
-def read_forms(source: Source) -> tuple[tuple[Form, ...], list[Diagnostic]]:
-    """Read the top-level forms of one text; includes are left as they are.
-
-    Returns:
-        The forms, none if the text has errors; and the errors.
-    """
+def read_forms(source: Source) -> Outcome:
+    """Read the top-level forms of one text; includes are left as they are."""
     return _Reading(source).forms()
 
 
@@ -94,6 +121,11 @@ def _empty(path: str, hint: str) -> Diagnostic:
     return Diagnostic(path, NOWHERE, Severity.ERROR, "ICR006", "there is nothing to read", hint)
 
 
+def _stumble_offset(text: str) -> int | None:
+    """Give the place at which the parser stumbles over a text, or None if it takes all of it."""
+    return _Reading(Source("", text)).stumble_offset()
+
+
 class _Reading:
     """One pass over one text."""
 
@@ -102,16 +134,19 @@ class _Reading:
         self._lines = Lines(source.text)
         self._problems: list[Diagnostic] = []
 
-    def forms(self) -> tuple[tuple[Form, ...], list[Diagnostic]]:
-        """Read all forms; the diagnostics are errors."""
+    def forms(self) -> Outcome:
+        """Read all forms."""
         if self._has_nul():
-            return (), self._problems
+            return Outcome((), tuple(self._problems))
         scanned = scan(self._source.text)
         if scanned.is_sound:
             whole = Segment(0, len(self._source.text))
             forms = self._parse(whole, "file", quiet=True)
             if isinstance(forms, tuple):
-                return forms, self._problems
+                return Outcome(forms, ())
+        mended = self._mended(scanned)
+        if mended is not None:
+            return self._read_on(mended)
         self._report_brackets(scanned)
         was_nameless = False
         for segment in scanned.segments:
@@ -120,7 +155,19 @@ class _Reading:
             if not (is_nameless and was_nameless):
                 self._read_segment(segment)
             was_nameless = is_nameless
-        return (), self._problems
+        return Outcome((), tuple(self._problems))
+
+    def _mended(self, scanned: Scan) -> Mended | None:
+        is_too_deep = any(segment.too_deep is not None for segment in scanned.segments)
+        if is_too_deep or scanned.unclosed_quote is not None:
+            return None
+        return mend_parentheses(self._source.text, self._source.path, _stumble_offset)
+
+    def _read_on(self, mended: Mended) -> Outcome:
+        """Read a text whose parentheses have been mended; what is wrong besides counts as well."""
+        outcome = _Reading(Source(self._source.path, mended.text)).forms()
+        more = [each for each in outcome.problems if each.span.line not in mended.lines]
+        return Outcome(outcome.forms, (*mended.problems, *more), mended.lines)
 
     def fragment(self, start: str) -> tuple[object, ...]:
         """Read the text as one fragment, or raise with all that is wrong with it."""
@@ -201,6 +248,11 @@ class _Reading:
         if not quiet:
             self._explain(result)
         return None
+
+    def stumble_offset(self) -> int | None:
+        """Give the place at which the parser stumbles, or None; what is in numbers is no matter."""
+        found = self._stumble(Segment(0, len(self._source.text)), "file")
+        return None if found is None else found.offset
 
     def _stumble(self, segment: Segment, start: str) -> Stumble | None:
         try:

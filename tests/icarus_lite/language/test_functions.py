@@ -123,7 +123,7 @@ def test_python_functions_may_be_called():
     ("function", "message"),
     [
         (lambda: 1 / 0, "1:24: the Python function in (f) failed: ZeroDivisionError: division"),
-        (lambda: None, "1:24: (f) returned NoneType, not a number, symbol or boolean"),
+        (lambda: None, "1:24: (f) returned NoneType, not a number, symbol or truth value"),
         (lambda: math.inf, "1:24: (f) is not a finite number"),
     ],
 )

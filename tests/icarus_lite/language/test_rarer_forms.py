@@ -2,8 +2,16 @@
 
 from __future__ import annotations
 
-from icarus_lite.language import Severity, check_domain, parse_atom, parse_conditions, parse_domain
-from icarus_lite.language.syntax import Breakpoint, LongTermGoal, Task
+from icarus_lite.language import (
+    Severity,
+    check_domain,
+    format_text,
+    parse_atom,
+    parse_conditions,
+    parse_domain,
+)
+from icarus_lite.language.keywords import MOMENTS
+from icarus_lite.language.syntax import Breakpoint, Condition, LongTermGoal, Moment, Task
 
 
 def read(text):
@@ -33,13 +41,73 @@ def test_breakpoints_are_beliefs_or_skills():
     (skills ((go ?h) :elements ((hand ?h)) :actions ((*go ?h)) :effects ((at ?h))))
     (break (at ?h) (not (hand ?any)) (go h1))"""
     domain, codes = read(text)
-    assert domain.breakpoints == tuple(
-        Breakpoint(each) for each in parse_conditions("((at ?h) (not (hand ?any)) (go h1))")
+    believed = parse_conditions("((at ?h) (not (hand ?any)))")
+    assert domain.breakpoints == (
+        *(Breakpoint(each, Moment.GAIN) for each in believed),
+        Breakpoint(Condition(parse_atom("(go h1)")), Moment.START),
     )
     assert codes == ["ICR038"]
     assert check_domain(domain) == ()
     wrong, _ = read(text.replace("(go h1)", "(go h1 h2) (aat ?h)"))
     assert [each.code for each in check_domain(wrong)] == ["ICR014", "ICR013"]
+
+
+CLAUSES = """(percepts (hand ^x))
+(concepts ((left ?h) :elements ((hand ?h ^x 1)) :break on-loss)
+          ((right ?h) :elements ((hand ?h ^x 2)) :break (on-gain on-loss)))
+(skills ((go ?h) :elements ((hand ?h)) :actions ((*go ?h)) :effects ((at ?h))
+         :break (on-success on-failure) :timeout 3))
+"""
+
+
+def test_a_clause_says_when_to_stop_at_its_head():
+    domain, codes = read(CLAUSES)
+    assert [(str(stop.condition), stop.moment) for stop in domain.breakpoints] == [
+        ("(left ?h)", Moment.LOSS),
+        ("(right ?h)", Moment.GAIN),
+        ("(right ?h)", Moment.LOSS),
+        ("(go ?h)", Moment.SUCCESS),
+        ("(go ?h)", Moment.FAILURE),
+    ]
+    assert codes == ["ICR038"]  # one note is enough
+    assert check_domain(domain) == ()
+    assert read(format_text(CLAUSES))[0] == domain
+
+
+def test_every_moment_has_a_keyword_and_every_keyword_a_moment():
+    words = [name for moments in MOMENTS.values() for name in moments]
+    assert words == [moment.value for moment in Moment]
+
+
+def test_a_moment_must_be_one_of_the_concept_or_skill():
+    domain, found = parse_domain(CLAUSES.replace("on-loss)", "on-lost)").replace("on-f", "on-"))
+    assert domain is None
+    assert [(each.code, each.message, each.hint) for each in found if each.code != "ICR038"] == [
+        (
+            "ICR046",
+            "`on-lost` is no moment at which to stop at a concept",
+            "did you mean `on-loss`? the moments of a concept are on-gain and on-loss",
+        )
+    ] * 2 + [
+        (
+            "ICR046",
+            "`on-ailure` is no moment at which to stop at a skill",
+            (
+                "did you mean `on-failure`? the moments of a skill are on-start, on-success and "
+                "on-failure"
+            ),
+        )
+    ]
+
+
+def test_an_older_clause_may_stop_as_well():
+    older = CLAUSES.replace("(concepts", "(create-concepts").replace("(skills", "(create-skills")
+    assert read(older)[0] == read(CLAUSES)[0]
+
+
+def test_a_head_is_checked_once_however_often_a_run_stops_at_it():
+    wrong = CLAUSES.replace("((right ?h)", "((left ?h ?h)")
+    assert [each.code for each in check_domain(read(wrong)[0])] == ["ICR014"]
 
 
 def test_the_agents_of_a_task():

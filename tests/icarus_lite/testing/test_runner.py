@@ -82,7 +82,7 @@ def test_a_missing_belief_comes_with_its_neighbours_attributes_included() -> Non
     (difference,) = run(":expect ((gap a b ^size 0.3))").differences
     assert difference.details == (
         "nearest: (gap a b ^size 0.25)",
-        "line 8, (gap ?a ?b ^size ?d): all its conditions hold",
+        "line 8, (gap ?a ?b ^size ?d): (= (- 0.5 0.25) 0.3) is not so",
     )
 
 

@@ -107,7 +107,7 @@ def test_windows_line_ends_and_a_byte_order_mark_are_a_change(tidy: Path) -> Non
 def test_a_file_with_errors_is_left_and_the_others_are_not(ugly: Path, broken: Path) -> None:
     status, out, err = icarus(broken, ugly)
     assert (status, out) == (2, f"reformatted {ugly}\n")
-    assert err.startswith(f'{broken}:1:1: error[ICR002]: this "(" is never closed\n')
+    assert err.startswith(f"{broken}:1:1: error[ICR002]: the form `goals` is never closed\n")
     assert broken.read_text() == BROKEN
     assert ugly.read_text() == TIDY
 

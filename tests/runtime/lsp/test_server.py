@@ -421,6 +421,126 @@ def test_names_are_found_in_open_texts_before_they_are_saved(editor, tmp_path):
     assert list(labels(editor, main.as_uri(), text, "?o ^")) == ["^type", "^fresh"]
 
 
+MAIN = '(include "parts.icr")\n(concepts ((big ?p) :elements ((part ?p))))\n'
+
+
+@pytest.fixture
+def pair(editor, tmp_path):
+    """Give an open text and one that it includes, open and changed but not saved."""
+    parts = tmp_path / "parts.icr"
+    parts.write_text("(percepts (piece))\n", encoding="utf-8")
+    main, part = (tmp_path / "main.icr").as_uri(), parts.as_uri()
+    assert [each.code for each in editor.open(main, MAIN)] == ["ICR013"]
+    editor.open(part, "(percepts (piece))\n")
+    editor.diagnostics(main)
+    yield main, part
+    for uri in (part, main):
+        editor.close(uri)
+
+
+def test_a_change_in_an_included_text_checks_those_that_include_it(editor, pair):
+    main, part = pair
+    editor.change(part, "(percepts (part))\n", 2)
+    assert [each.code for each in editor.diagnostics(main)] == ["ICR040"]
+    editor.change(part, "(percepts (part)\n", 3)
+    about = [each for each in editor.diagnostics(main) if each.code == "ICR002"]
+    assert about[0].range == types.Range(types.Position(0, 9), types.Position(0, 20))
+    editor.change(part, "(percepts (prt))\n", 4)
+    assert "did you mean `prt`?" in editor.diagnostics(main)[0].message
+    editor.close(part)  # so that it counts as it is on the disk
+    assert "did you mean" not in editor.diagnostics(main)[0].message
+    editor.open(part, "(percepts (part))\n")
+    assert [each.code for each in editor.diagnostics(main)] == ["ICR040"]
+
+
+def test_names_are_found_and_changed_in_included_texts_that_are_not_saved(editor, pair):
+    main, part = pair
+    text = "(percepts\n  (part))\n"
+    editor.change(part, text, 2)
+    editor.diagnostics(main)
+    document = types.TextDocumentIdentifier(main)
+    where = at(MAIN, "(part", 2)
+    (found,) = editor.ask(
+        editor.client.text_document_definition_async(types.DefinitionParams(document, where))
+    )
+    assert (found.uri, marked(text, found.range)) == (part, "part")
+    context = types.ReferenceContext(include_declaration=True)
+    references = editor.ask(
+        editor.client.text_document_references_async(
+            types.ReferenceParams(context, types.TextDocumentIdentifier(part), at(text, "part"))
+        )
+    )
+    assert {each.uri for each in references} == {main, part}
+    edit = editor.ask(
+        editor.client.text_document_rename_async(types.RenameParams(document, where, "piece"))
+    )
+    assert {uri: len(edits) for uri, edits in edit.changes.items()} == {main: 1, part: 1}
+    symbols = editor.ask(
+        editor.client.workspace_symbol_async(types.WorkspaceSymbolParams(query="pT"))
+    )
+    assert [(each.name, each.location.uri, each.container_name) for each in symbols] == [
+        ("part", part, "percepts")
+    ]
+    every = editor.ask(editor.client.workspace_symbol_async(types.WorkspaceSymbolParams(query="")))
+    assert {each.name for each in every} >= {"part", "big"}
+
+
+def test_a_quick_fix_carries_the_hint_out(editor, uri):
+    text = SMALL.replace("(not (holding", "(not (holdng")
+    editor.open(uri, text)
+    document = types.TextDocumentIdentifier(uri)
+    place = at(text, "holdng", 3)
+
+    def ask(only=None, end=place):
+        context = types.CodeActionContext([], only)
+        params = types.CodeActionParams(document, types.Range(place, end), context)
+        return editor.ask(editor.client.text_document_code_action_async(params))
+
+    (action,) = ask()
+    assert (action.title, action.kind, action.is_preferred) == (
+        "Write `holding`",
+        types.CodeActionKind.QuickFix,
+        True,
+    )
+    assert action.diagnostics[0].code == "ICR013"
+    (edit,) = action.edit.changes[uri]
+    assert (marked(text, edit.range), edit.new_text) == ("holdng", "holding")
+    assert len(ask([types.CodeActionKind.QuickFix])) == 1
+    assert not ask([types.CodeActionKind.Refactor])
+    mended = text.replace("holdng", "holding")
+    editor.change(uri, mended, 2)
+    assert "Write `holding`" not in [each.title for each in ask(end=at(mended, "(task"))]
+
+
+def test_older_spellings_are_rewritten_by_a_quick_fix(editor, uri):
+    text = "(percepts (o))\n(create-concepts ((c ?x) :relations ((o ?x)) :percepts ((o ?x))))\n"
+    editor.open(uri, text)
+    params = types.CodeActionParams(
+        types.TextDocumentIdentifier(uri),
+        types.Range(at(text, ":relations"), at(text, ":relations")),
+        types.CodeActionContext([]),
+    )
+    actions = editor.ask(editor.client.text_document_code_action_async(params))
+    assert [each.title for each in actions] == [
+        "Write this form as it is written today",
+        "Write the whole file as it is written today",
+    ]
+    (edit,) = actions[0].edit.changes[uri]
+    assert edit.new_text == "(concepts\n  ((c ?x) :elements ((o ?x) (o ?x))))"
+
+
+def test_signature_help_shows_what_comes_next(editor, uri):
+    text = SMALL.replace("(holding hand1 ball1)", "(holding hand1 ")
+    editor.open(uri, text)
+    params = types.SignatureHelpParams(
+        types.TextDocumentIdentifier(uri), at(text, "hand1", len("hand1 "))
+    )
+    found = editor.ask(editor.client.text_document_signature_help_async(params))
+    assert found.signatures[0].label == "(holding ?hand ?obj)"
+    assert found.active_parameter == 1
+    assert found.signatures[0].parameters[1].label == (15, 19)
+
+
 def test_files_outside_the_folder_are_not_looked_at(editor, tmp_path):
     (tmp_path / "secret.icr").write_text("(percepts (object ^secret))\n", encoding="utf-8")
     main = tmp_path / "inner" / "main.icr"

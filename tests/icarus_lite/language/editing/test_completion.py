@@ -33,9 +33,13 @@ def proposed(text, **options):
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
-        ("(concepts ((a ?x) |", [":elements", ":tests", ":binds"]),
-        ("(concepts ((a ?x) :tests () |", [":elements", ":binds"]),
-        ("(concepts ((a ?x) :el|", [":elements", ":tests", ":binds"]),
+        ("(concepts ((a ?x) |", [":elements", ":tests", ":binds", ":break"]),
+        ("(concepts ((a ?x) :tests () |", [":elements", ":binds", ":break"]),
+        ("(concepts ((a ?x) :el|", [":elements", ":tests", ":binds", ":break"]),
+        ("(concepts ((a ?x) :break |", ["on-gain", "on-loss"]),
+        ("(concepts ((a ?x) :break (on-gain |", ["on-loss"]),
+        ("(skills ((a ?x) :break (|", ["on-start", "on-success", "on-failure"]),
+        ("(skills ((a ?x) :break on-s|", ["on-start", "on-success", "on-failure"]),
         ("(concepts ((|", ["ball"]),
         ("(concepts ((a ?x) :elements ((|", ["not", *DEFINED, "a", "attached"]),
         ("(concepts ((a ?x) :elements ((not (|", [*DEFINED, "a", "attached"]),

@@ -197,7 +197,7 @@ def test_a_form_left_open_does_not_swallow_the_next_ones():
     text = "(concepts\n  ((p ?x) :elements ((q ?x)))\n\n(gaols (a))\n\n(task 1)\n(tsk 1)\n"
     assert [(each.code, each.span.line) for each in errors(text)] == [
         ("ICR002", 1),
-        ("ICR009", 4),
+        ("ICR007", 4),
         ("ICR007", 7),
     ]
 
