@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from aapa.alignment import Alignment, Place, align
+from aapa.alignment import Alignment, align
 from aapa.anchoring import Anchoring, AnchoringState, step
 from aapa.anchors import Anchor, AnchorStatus, Attachment
 from aapa.camera import Camera
+from aapa.costs import Cost, Place
 from aapa.detections import Box, Detection, Position
 from aapa.errors import AnchoringError, RecordingError
 from aapa.parameters import AnchoringParameters
@@ -21,6 +22,7 @@ __all__ = [
     "Attachment",
     "Box",
     "Camera",
+    "Cost",
     "Detection",
     "Place",
     "Position",

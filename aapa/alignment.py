@@ -4,19 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from aapa.costs import CENTRE, Cost, Place, Rows
 from aapa.errors import AnchoringError
+from aapa.gating import cheapest_near_pairs, cheapest_of_all
 
+__all__ = ["Alignment", "Place", "align", "squared_distance"]
 
-class Place(NamedTuple):
-    """What alignment looks at: a type, and a centre in px (two numbers) or m (three)."""
-
-    type: str
-    centre: tuple[float, ...]
+_LARGEST_DENSE = 150 * 150
+"""Cells of a cost matrix. Beyond, looking for near pairs first is faster than filling it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,23 +34,28 @@ class Alignment:
 
 def squared_distance(first: Sequence[float], second: Sequence[float]) -> float:
     """Give the squared Euclidean distance of two points, in the square of their unit."""
+    if len(first) == len(second) == 2:  # the image: written out, since it is asked most often
+        x, y = first[0] - second[0], first[1] - second[1]
+        return x * x + y * y
     total = 0.0
     for a, b in zip(first, second, strict=True):
         total += (a - b) * (a - b)
     return total
 
 
-def align(anchors: Sequence[Place], detections: Sequence[Place], tau: float) -> Alignment:
+def align(
+    anchors: Sequence[Place], detections: Sequence[Place], tau: float, cost: Cost = CENTRE
+) -> Alignment:
     """Match detections to anchors of the same type at least total cost.
 
-    The cost of a pair is its squared centre distance, and each pair that could be formed but is
-    not costs tau. The result is the optimum of that; solving without the cap and dropping the
-    bad pairs afterwards would give another one.
+    Each pair that could be formed but is not costs tau. The result is the optimum of that;
+    solving without the cap and dropping the bad pairs afterwards would give another one.
 
     Args:
         anchors: (n) where the anchors were.
         detections: (m) where something was detected, centres of the same length and unit.
-        tau: Pairs that cost more stay unmatched, squared unit of the centres, above 0.
+        tau: Pairs that cost more stay unmatched, in the unit of the cost, above 0.
+        cost: Of a pair; the squared centre distance if left out.
 
     Raises:
         AnchoringError: tau is not above 0.
@@ -72,49 +75,56 @@ def align(anchors: Sequence[Place], detections: Sequence[Place], tau: float) -> 
         columns = by_type.get(name)
         if columns is None:
             continue
-        if len(rows) == len(columns) == 1:
+        if len(rows) == len(columns) == 1 and cost is CENTRE:
             # The common case, where each thing has a type of its own, needs no solver.
             row, column = rows[0], columns[0]
             if squared_distance(anchors[row].centre, detections[column].centre) <= tau:
                 pairs.append((row, column))
             continue
-        costs = _costs([anchors[row] for row in rows], [detections[column] for column in columns])
-        pairs.extend((rows[row], columns[column]) for row, column in _cheapest(costs, tau))
+        found = _cheapest(
+            [anchors[row] for row in rows], [detections[column] for column in columns], tau, cost
+        )
+        pairs.extend((rows[row], columns[column]) for row, column in found)
     pairs.sort()
-    matched = {anchor for anchor, _ in pairs}
-    used = {detection for _, detection in pairs}
     return Alignment(
         tuple(pairs),
-        tuple(index for index in range(len(anchors)) if index not in matched),
-        tuple(index for index in range(len(detections)) if index not in used),
+        _others(len(anchors), [row for row, _ in pairs]),
+        _others(len(detections), [column for _, column in pairs]),
     )
+
+
+def _others(count: int, taken: Sequence[int]) -> tuple[int, ...]:
+    """Give the numbers below a count that are not taken, ascending."""
+    if len(taken) == count:
+        return ()
+    known = set(taken)
+    return tuple([number for number in range(count) if number not in known])
 
 
 def _by_type(places: Sequence[Place]) -> dict[str, list[int]]:
     groups: dict[str, list[int]] = {}
     for index, place in enumerate(places):
-        groups.setdefault(place.type, []).append(index)
+        group = groups.get(place[0])
+        if group is None:
+            groups[place[0]] = [index]
+        else:
+            group.append(index)
     return groups
 
 
-def _costs(anchors: Sequence[Place], detections: Sequence[Place]) -> NDArray[np.float64]:
-    """Give the (n, m) squared centre distances."""
-    old = np.array([anchor.centre for anchor in anchors], dtype=np.float64)
-    new = np.array([detection.centre for detection in detections], dtype=np.float64)
-    offsets = old[:, None, :] - new[None, :, :]
-    squares: NDArray[np.float64] = np.einsum("ijk,ijk->ij", offsets, offsets)
-    return squares
+def _cheapest(
+    anchors: Sequence[Place], detections: Sequence[Place], tau: float, cost: Cost
+) -> list[tuple[int, int]]:
+    """Give the pairs of the capped optimum, as numbers of both sides."""
+    features = _columns(anchors, cost), _columns(detections, cost)
+    if len(anchors) * len(detections) > _LARGEST_DENSE and cost.reach is not None:
+        if cost is CENTRE:
+            return cheapest_near_pairs(features, features, tau, cost)
+        centres = _columns(anchors, CENTRE), _columns(detections, CENTRE)
+        return cheapest_near_pairs(centres, features, tau, cost)
+    costs = cost.pairs(features[0][:, None], features[1][None])
+    return [(row, column) for row, column in cheapest_of_all(costs, tau).tolist()]
 
 
-def _cheapest(costs: NDArray[np.float64], tau: float) -> list[tuple[int, int]]:
-    """Give the pairs of the capped optimum, as row and column of the (n, m) costs."""
-    from scipy.optimize import linear_sum_assignment  # noqa: PLC0415 - a third of a second to load
-
-    # The cap lies a hair above tau, so that a pair at exactly tau is taken rather than left.
-    capped = np.where(costs > tau, tau * (1 + 1e-9), costs)
-    rows, columns = linear_sum_assignment(capped)
-    return [
-        (row, column)
-        for row, column in zip(rows.tolist(), columns.tolist(), strict=True)
-        if costs[row, column] <= tau
-    ]
+def _columns(places: Sequence[Place], cost: Cost) -> Rows:
+    return np.array([cost.features(place) for place in places], dtype=np.float64)

@@ -2,24 +2,24 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from operator import attrgetter
 
-from aapa.alignment import Place, align, squared_distance
-from aapa.anchors import Anchor, AnchorStatus
-from aapa.boxes import centre_of
+from aapa.alignment import align, squared_distance
+from aapa.anchors import Anchor
 from aapa.camera import Camera
-from aapa.detections import Box, Detection, Position
+from aapa.detections import Box, Detection
 from aapa.hierarchy import parents_of
 from aapa.hypotheses import Move, explain, move_between
 from aapa.names import NameRegister
 from aapa.parameters import AnchoringParameters
+from aapa.sightings import Sightings
 from aapa.validation import check_camera, checked_detections
 from aapa.view import View
 
 _by_name = attrgetter("name")
+_in_image = attrgetter("type", "box", "score")
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,7 +114,7 @@ def step(
     if camera is not None:
         check_camera(camera)
     parents = parents_of(attachments)
-    frame = _Frame(
+    frame = Sightings(
         state.frame + 1,
         parameters,
         parents if parameters.use_attachments else {},
@@ -122,16 +122,17 @@ def step(
     )
     reported = {detection.name: detection for detection in found if detection.name is not None}
     register = state.register.with_bodies(frozenset(reported))
-    old_bodies = [anchor for anchor in state.anchors if anchor.name in register.bodies]
-    old_things = [anchor for anchor in state.anchors if anchor.name not in register.bodies]
-    bodies = [frame.of_body(name, reported[name]) for name in sorted(reported)]
-    things, lost, register = _aligned(
-        old_things, [detection for detection in found if detection.name is None], register, frame
-    )
+    old_bodies = {a.name: a for a in state.anchors if a.name in register.bodies}
+    old_things = [a for a in state.anchors if a.name not in old_bodies]
+    bodies = [
+        frame.of_body(name, reported[name], old_bodies.get(name)) for name in sorted(reported)
+    ]
+    unnamed = [detection for detection in found if detection.name is None] if reported else found
+    things, lost, register = _aligned(old_things, unnamed, register, frame)
     seen = sorted([*bodies, *things], key=_by_name)
     moves = _moves_of_parents(state.anchors, seen, frame.parents)
     explanation = explain(lost, seen, moves, frame.parents, frame.view)
-    gone = [frame.without_report(anchor) for anchor in old_bodies if anchor.name not in reported]
+    gone = [frame.without_report(body) for name, body in old_bodies.items() if name not in reported]
     return AnchoringState(
         tuple(sorted([*seen, *explanation.kept], key=_by_name)),
         tuple(sorted([*gone, *explanation.dropped], key=_by_name)),
@@ -144,37 +145,49 @@ def _aligned(
     anchors: Sequence[Anchor],
     detections: Sequence[Detection],
     register: NameRegister,
-    frame: _Frame,
+    frame: Sightings,
 ) -> tuple[list[Anchor], list[Anchor], NameRegister]:
     """Give the anchors with a detection, old and new, those without, and the names given."""
-    # Solved in an order of its own, so that even ties do not depend on the detector's.
-    order = sorted(range(len(detections)), key=lambda index: _canonical(detections[index]))
+    order = _order(detections)
+    parameters = frame.parameters
     old = [frame.place(anchor) for anchor in anchors]
     new = [frame.place(detections[index]) for index in order]
-    alignment = align(old, new, frame.parameters.tau)
+    alignment = align(old, new, parameters.tau, parameters.comparison)
     seen = [
-        frame.of_sighting(
+        frame.of_old(
             anchors[row],
             detections[order[column]],
             squared_distance(old[row].centre, new[column].centre),
         )
         for row, column in alignment.pairs
     ]
-    # New objects are numbered as the detector lists them.
-    anchored = {anchor.name for anchor in anchors}
-    for index in sorted(order[column] for column in alignment.appeared):
-        detection = detections[index]
-        unique = detection.type in frame.parameters.unique_types
-        name, register = register.with_new(detection.type, unique=unique, anchored=anchored)
-        anchored.add(name)
-        seen.append(frame.of_new(name, detection))
+    if alignment.appeared:
+        anchored = {anchor.name for anchor in anchors}
+        # New objects are numbered as the detector lists them.
+        for index in sorted(order[column] for column in alignment.appeared):
+            detection = detections[index]
+            unique = detection.type in parameters.unique_types
+            name, register = register.with_new(detection.type, unique=unique, anchored=anchored)
+            anchored.add(name)
+            seen.append(frame.of_new(name, detection))
     return seen, [anchors[index] for index in alignment.lost], register
+
+
+def _order(detections: Sequence[Detection]) -> Sequence[int]:
+    """Give an order to align in, in which even ties do not depend on the detector's."""
+    if len({detection.type for detection in detections}) == len(detections):
+        return range(len(detections))  # no two compete
+    plain = all(detection.position is None for detection in detections)
+    keys = list(map(_in_image if plain else _canonical, detections))
+    return sorted(range(len(detections)), key=keys.__getitem__)
 
 
 def _moves_of_parents(
     old: Sequence[Anchor], seen: Sequence[Anchor], parents: Mapping[str, str]
 ) -> dict[str, Move]:
     """Give how far each seen parent went; one that was not anchored before has not moved."""
+    if not parents:
+        return {}
     carriers = set(parents.values())
     before = {anchor.name: anchor for anchor in old if anchor.name in carriers}
     return {
@@ -186,92 +199,3 @@ def _moves_of_parents(
 
 def _canonical(detection: Detection) -> tuple[str, Box, tuple[float, ...], float]:
     return detection.type, detection.box, detection.position or (), detection.score
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Frame:
-    """One frame's circumstances, and what a detection makes of an anchor in them."""
-
-    number: int
-    parameters: AnchoringParameters
-    parents: Mapping[str, str]
-    view: View
-
-    def place(self, thing: Anchor | Detection) -> Place:
-        if self.parameters.space == "image":
-            return Place(thing.type, centre_of(thing.box))
-        # Base space has positions everywhere: the detections were checked for them.
-        assert thing.position is not None
-        return Place(thing.type, thing.position)
-
-    def of_body(self, name: str, detection: Detection) -> Anchor:
-        return self._visible(name, detection, 1.0, "It reports its own place.")
-
-    def of_new(self, name: str, detection: Detection) -> Anchor:
-        confidence = self.parameters.initial_confidence
-        return self._visible(name, detection, confidence, "It is seen for the first time.")
-
-    def of_sighting(self, anchor: Anchor, detection: Detection, cost: float) -> Anchor:
-        unit = "px" if self.parameters.space == "image" else "m"
-        return self._visible(
-            anchor.name,
-            self._tempered(anchor, detection, cost),
-            min(1.0, round(anchor.confidence + self.parameters.confidence_gain, 9)),
-            f"It is seen {math.sqrt(cost):.3g} {unit} from its last place.",
-        )
-
-    def without_report(self, body: Anchor) -> Anchor:
-        return Anchor(
-            body.name,
-            body.type,
-            body.box,
-            AnchorStatus.MISSING,
-            position=body.position,
-            size=body.size,
-            last_seen=body.last_seen,
-            reason="It no longer reports its place; it is given up.",
-        )
-
-    def _tempered(self, anchor: Anchor, detection: Detection, cost: float) -> Detection:
-        """Give the detection as far as the gain goes along with it."""
-        gain = self.parameters.position_gain
-        carried = anchor.status is AnchorStatus.ATTACHED or anchor.name in self.parents
-        # Half the alignment radius is no noise: what comes back there has been moved.
-        strayed = anchor.status is not AnchorStatus.VISIBLE and cost > self.parameters.tau / 4
-        size = detection.size or self.view.size_of(detection.box, detection.position) or anchor.size
-        if gain == 1 or carried or strayed:
-            return Detection(detection.type, detection.box, 1.0, detection.position, size)
-        box = detection.box
-        if self.parameters.space == "image":
-            (a, b, c, d), (x1, y1, x2, y2) = anchor.box, box
-            keep = 1 - gain
-            box = (
-                keep * a + gain * x1,
-                keep * b + gain * y1,
-                keep * c + gain * x2,
-                keep * d + gain * y2,
-            )
-        position = _between(anchor.position, detection.position, gain)
-        return Detection(detection.type, box, 1.0, position, size)
-
-    def _visible(self, name: str, detection: Detection, confidence: float, reason: str) -> Anchor:
-        return Anchor(
-            name,
-            detection.type,
-            detection.box,
-            AnchorStatus.VISIBLE,
-            None,
-            confidence,
-            detection.position,
-            detection.size or self.view.size_of(detection.box, detection.position),
-            self.number,
-            reason,
-        )
-
-
-def _between(old: Position | None, new: Position | None, gain: float) -> Position | None:
-    if old is None or new is None:
-        return new
-    (a, b, c), (x, y, z) = old, new
-    keep = 1 - gain
-    return keep * a + gain * x, keep * b + gain * y, keep * c + gain * z

@@ -41,6 +41,7 @@ class Anchor:
         size: Width and height, m, if detections carry one.
         last_seen: The update count at which it was last aligned with a detection.
         reason: One sentence on why it is believed to be there.
+        streak: For how many frames in a row it has been seen, or, below 0, missed.
     """
 
     name: str
@@ -53,3 +54,4 @@ class Anchor:
     size: tuple[float, float] | None = None
     last_seen: int = 0
     reason: str = ""
+    streak: int = 0

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import numpy as np
+from numpy.typing import NDArray
+
 from aapa.detections import Box
 
 
@@ -33,6 +36,19 @@ def overlap(first: Box, second: Box, margin_px: float) -> bool:
         and has_area(first)
         and has_area(second)
     )
+
+
+def overlaps(boxes: NDArray[np.float64], box: Box, margin_px: float) -> NDArray[np.bool_]:
+    """Give (n,) which of many boxes (n, 4) `overlap` with one."""
+    near: NDArray[np.bool_] = (
+        (boxes[:, 0] < box[2] + margin_px)
+        & (box[0] < boxes[:, 2] + margin_px)
+        & (boxes[:, 1] < box[3] + margin_px)
+        & (box[1] < boxes[:, 3] + margin_px)
+        & (boxes[:, 2] > boxes[:, 0])
+        & (boxes[:, 3] > boxes[:, 1])
+    )
+    return near if has_area(box) else np.zeros_like(near)
 
 
 def has_area(box: Box) -> bool:

@@ -18,12 +18,13 @@ Source: Liang et al. 2021, section III-B 1 (hypothesis reasoning with attachment
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from aapa.anchors import Anchor, AnchorStatus
 from aapa.boxes import centre_of, moved
 from aapa.detections import Box, Position
+from aapa.occluders import Occluders
 from aapa.view import View
 
 
@@ -33,6 +34,9 @@ class Move(NamedTuple):
     dx: float = 0.0
     dy: float = 0.0
     offset: Position | None = (0.0, 0.0, 0.0)
+
+
+_AT_REST = Move()
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,6 +79,8 @@ def explain(
         view: The image of this frame.
     """
     placed = _in_this_frame(lost, moves, parents, view)
+    if not placed:
+        return Explanation((), ())
     grounds = _grounds(placed, seen, parents, view)
     maintained = {anchor.name: anchor for anchor in seen}
     kept: list[Anchor] = []
@@ -83,7 +89,7 @@ def explain(
         parent = maintained.get(parents.get(anchor.name, ""))
         result = _concluded(anchor, parent, grounds.get(anchor.name), view)
         if result.confidence < 0:
-            dropped.append(replace(result, confidence=0.0))
+            dropped.append(_changed(result, result.status, result.parent, 0.0, result.reason))
         else:
             kept.append(result)
             maintained[result.name] = result
@@ -103,22 +109,52 @@ def _in_this_frame(
     """Give the lost anchors, by name in order, carried along and seen from where the camera is."""
     by_name = {anchor.name: anchor for anchor in sorted(lost, key=lambda anchor: anchor.name)}
     involved = {*parents, *parents.values()}
+    least = view.parameters.min_anchor_confidence
     placed: dict[str, Anchor] = {}
     for name, anchor in by_name.items():
-        carrier = name
-        while carrier in by_name:
-            carrier = parents.get(carrier, "")
-        box, position = _carried(anchor, moves.get(carrier, Move()))
+        box, position = anchor.box, anchor.position
+        if moves:
+            carrier = name
+            while carrier in by_name:
+                carrier = parents.get(carrier, "")
+            box, position = _carried(anchor, moves.get(carrier, _AT_REST))
+        box = view.box_of(box, position, anchor.size)
         confidence = anchor.confidence
-        if name in involved:
-            confidence = max(confidence, view.parameters.min_anchor_confidence)
-        placed[name] = replace(
-            anchor,
-            box=view.box_of(box, position, anchor.size),
-            position=position,
-            confidence=confidence,
-        )
+        if confidence < least and name in involved:
+            confidence = least
+        if box == anchor.box and position == anchor.position and confidence == anchor.confidence:
+            placed[name] = anchor
+        else:
+            placed[name] = _changed(
+                anchor, anchor.status, anchor.parent, confidence, anchor.reason, box, position
+            )
     return placed
+
+
+def _changed(
+    anchor: Anchor,
+    status: AnchorStatus,
+    parent: str | None,
+    confidence: float,
+    reason: str,
+    box: Box | None = None,
+    position: Position | None = None,
+    streak: int | None = None,
+) -> Anchor:
+    # Written out, since `dataclasses.replace` would take a fifth of the time of a whole frame.
+    return Anchor(
+        anchor.name,
+        anchor.type,
+        anchor.box if box is None else box,
+        status,
+        parent,
+        confidence,
+        anchor.position if box is None else position,
+        anchor.size,
+        anchor.last_seen,
+        reason,
+        anchor.streak if streak is None else streak,
+    )
 
 
 def _carried(anchor: Anchor, move: Move) -> tuple[Box, Position | None]:
@@ -141,7 +177,7 @@ def _grounds(
     outside = {anchor.name: view.why_out_of_view(anchor.box, anchor.position) for anchor in pending}
     standing = {anchor.name for anchor in seen}
     grounds: dict[str, _Ground] = {}
-    front = list(seen)
+    front = Occluders(seen, view)
     while pending and (front or not grounds):
         found: dict[str, _Ground] = {}
         for anchor in pending:
@@ -150,25 +186,18 @@ def _grounds(
                 found[anchor.name] = _Ground(AnchorStatus.ATTACHED, "")
             elif reason is not None:
                 found[anchor.name] = _Ground(AnchorStatus.OUT_OF_VIEW, reason)
-            elif (occluder := _first_hiding(anchor, front, view)) is not None:
+            elif (occluder := front.first_hiding(anchor)) is not None:
                 found[anchor.name] = _Ground(
                     AnchorStatus.OCCLUDED, f"{occluder} stands in front of it."
                 )
         if not found:
             break
         # The next round asks only about what this one has added: the rest has been asked.
-        front = [placed[name] for name in found]
+        front = Occluders([placed[name] for name in found], view)
         standing.update(found)
         grounds.update(found)
         pending = [anchor for anchor in pending if anchor.name not in found]
     return grounds
-
-
-def _first_hiding(anchor: Anchor, front: Sequence[Anchor], view: View) -> str | None:
-    behind = (anchor.box, anchor.position)
-    return next(
-        (other.name for other in front if view.hides((other.box, other.position), behind)), None
-    )
 
 
 def _parents_first(placed: Mapping[str, Anchor], parents: Mapping[str, str]) -> list[Anchor]:
@@ -184,29 +213,38 @@ def _parents_first(placed: Mapping[str, Anchor], parents: Mapping[str, str]) -> 
 
 def _concluded(anchor: Anchor, parent: Anchor | None, ground: _Ground | None, view: View) -> Anchor:
     """Give the anchor as it is believed to be; a confidence below 0 says that it is given up."""
-    parameters = view.parameters
-    if anchor.confidence < parameters.min_anchor_confidence:
-        return _faded(anchor, "it had been seen too little to be reasoned about", view)
+    streak = min(anchor.streak, 0) - 1
+    if anchor.confidence < view.parameters.min_anchor_confidence:
+        return _faded(anchor, "it had been seen too little to be reasoned about", view, streak)
     if parent is not None:
-        return replace(
+        return _changed(
             anchor,
-            status=AnchorStatus.ATTACHED,
-            parent=parent.name,
-            reason=f"It is attached to {parent.name} ({parent.status}) and moves with it.",
+            AnchorStatus.ATTACHED,
+            parent.name,
+            anchor.confidence,
+            f"It is attached to {parent.name} ({parent.status}) and moves with it.",
+            streak=streak,
         )
     if ground is not None:
-        return replace(anchor, status=ground.status, parent=None, reason=ground.reason)
-    return _faded(anchor, "nothing explains why", view)
+        return _changed(
+            anchor, ground.status, None, anchor.confidence, ground.reason, streak=streak
+        )
+    return _faded(anchor, "nothing explains why", view, streak)
 
 
-def _faded(anchor: Anchor, why: str, view: View) -> Anchor:
+def _faded(anchor: Anchor, why: str, view: View, streak: int) -> Anchor:
     # Rounded, so that ten losses of 0.1 are 1 and the last cycle does not depend on float dust.
     confidence = round(anchor.confidence - view.parameters.confidence_loss, 9)
     outcome = f"its confidence falls to {confidence:.3g}" if confidence >= 0 else "it is given up"
-    return replace(
+    return _changed(
         anchor,
-        status=AnchorStatus.MISSING,
-        parent=None,
-        confidence=confidence,
-        reason=f"It is not seen and {why}; {outcome}.",
+        AnchorStatus.MISSING,
+        None,
+        confidence,
+        f"It is not seen {_for_how_long(streak)}and {why}; {outcome}.",
+        streak=streak,
     )
+
+
+def _for_how_long(streak: int) -> str:
+    return f"for {-streak} frames " if streak < -1 else ""

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Literal, TypeAlias
 
+from aapa.costs import CENTRE, COSTS, OVERLAP, Cost
 from aapa.errors import AnchoringError
 
 Space: TypeAlias = Literal["image", "base"]
@@ -34,6 +35,11 @@ class AnchoringParameters:
         space: "image" measures between box centres in px, which needs a camera that stands
             still; "base" measures between positions in m, and every detection has to carry one.
             Default "image".
+        cost: How detections are compared with anchors: "centre", the squared distance of the
+            centres (default); "centre-and-size", the square of that distance and the difference
+            of the mean sides, px²; "overlap", 1 less the boxes' intersection over union, with
+            tau at most 1. In base space, where positions have no boxes, only "centre". A `Cost`
+            of one's own does as well.
         position_gain: Share of the way an anchor goes to its new detection, in (0, 1]. 1, the
             default, takes the detection as it is; less makes a running mean for a noisy
             detector, for anchors that nothing carries.
@@ -66,6 +72,7 @@ class AnchoringParameters:
 
     tau: float = 6500.0
     space: Space = "image"
+    cost: str | Cost = "centre"
     position_gain: float = 1.0
     confidence_gain: float = 0.1
     confidence_loss: float = 0.1
@@ -80,6 +87,7 @@ class AnchoringParameters:
     def __post_init__(self) -> None:
         if self.space not in ("image", "base"):
             raise AnchoringError(f'space is {self.space!r}; it has to be "image" or "base"')
+        self._check_cost()
         self._check_tau()
         for name in ("position_gain", "confidence_gain", "confidence_loss"):
             if _number(name, getattr(self, name)) <= 0:
@@ -97,8 +105,17 @@ class AnchoringParameters:
 
     @property
     def radius(self) -> float:
-        """The distance that `tau` stands for, px in image space and m in base space."""
-        return math.sqrt(self.tau)
+        """The distance that `tau` stands for, px in image space and m in base space.
+
+        Infinite with a cost that is no distance.
+        """
+        reach = self.comparison.reach
+        return math.inf if reach is None else reach(self.tau)
+
+    @property
+    def comparison(self) -> Cost:
+        """What `cost` stands for."""
+        return COSTS[self.cost] if isinstance(self.cost, str) else self.cost
 
     @classmethod
     def from_mapping(cls, values: Mapping[str, object]) -> AnchoringParameters:
@@ -129,6 +146,22 @@ class AnchoringParameters:
             settings["image_size"] = tuple(size)
         # Every value is checked by __post_init__, which the type checker cannot know.
         return cls(**settings)  # type: ignore[arg-type]
+
+    def _check_cost(self) -> None:
+        if isinstance(self.cost, Cost):
+            return
+        if self.cost not in tuple(COSTS):
+            names = ", ".join(COSTS)
+            raise AnchoringError(f"cost is {self.cost!r}; it has to be one of {names}")
+        if self.space == "base" and self.cost != CENTRE.name:
+            raise AnchoringError(
+                f'cost is {self.cost!r}, which compares boxes; in base space it has to be "centre"'
+            )
+        if self.cost == OVERLAP.name and _number("tau", self.tau) > 1:
+            raise AnchoringError(
+                f"tau is {self.tau!r}; with the cost of overlap it is at most 1, where boxes "
+                "share nothing"
+            )
 
     def _check_tau(self) -> None:
         tau = _number("tau", self.tau)

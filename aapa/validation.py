@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
@@ -26,7 +26,10 @@ def checked_detections(detections: Iterable[Detection], space: Space) -> tuple[D
             the same name.
     """
     result = tuple(
-        _checked(number, detection, space) for number, detection in enumerate(detections, start=1)
+        [
+            detection if _is_plain(detection, space) else _checked(number, detection, space)
+            for number, detection in enumerate(detections, start=1)
+        ]
     )
     names = [detection.name for detection in result if detection.name is not None]
     if len(set(names)) != len(names):
@@ -59,6 +62,34 @@ def check_camera(camera: Camera) -> None:
             "the camera's rotation is not a rotation; its columns are its right, down and forward "
             "axes in the base frame, each of length 1"
         )
+
+
+def _is_plain(detection: object, space: Space) -> bool:
+    """Tell whether a detection is as most are, in order and with nothing to convert."""
+    if not isinstance(detection, Detection):
+        return False
+    if (
+        space != "image"
+        or detection.position is not None
+        or detection.size is not None
+        or detection.name is not None
+    ):
+        return False
+    corners: Sequence[float] = detection.box
+    score = detection.score
+    if type(corners) is not tuple or len(corners) != 4 or type(score) is not float:
+        return False
+    x1, y1, x2, y2 = corners
+    most = _LARGEST_COORDINATE
+    return (
+        type(detection.type) is str
+        and detection.type != ""
+        and type(x1) is type(y1) is type(x2) is type(y2) is float
+        # NaN fails every comparison.
+        and -most <= x1 <= x2 <= most
+        and -most <= y1 <= y2 <= most
+        and 0 <= score <= 1
+    )
 
 
 def _checked(number: int, detection: Detection, space: Space) -> Detection:

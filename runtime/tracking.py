@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from dataclasses import replace
+from pathlib import Path
+
+import yaml
 
 from aapa import Anchor, Anchoring, AnchoringError, AnchoringParameters, AnchorStatus, Attachment
 from aapa.jsonl import RecordedAction, RecordedFrame
 from icarus_lite import Action, Outcome, Percept, Status
 from icarus_lite.inference import InferenceEngine, Memory
 from icarus_lite.language.syntax import Domain
+from runtime.errors import UsageError
 
 
 def track(
-    frames: Iterable[RecordedFrame], parameters: AnchoringParameters, domain: Domain | None = None
+    frames: Iterable[RecordedFrame],
+    parameters: AnchoringParameters,
+    domain: Domain | None = None,
+    note: Callable[[str], None] | None = None,
 ) -> Iterator[tuple[int, tuple[Anchor, ...]]]:
     """Anchor a recording frame by frame.
 
@@ -21,9 +28,11 @@ def track(
     action that ended at frame e moves a child from e + 1 on.
 
     Args:
-        frames: The recording. Its image size, where told, must stay the same.
+        frames: The recording, in the order of time. Its image size, where told, must stay the
+            same.
         parameters: Of the anchoring; the image size comes from the frames if it is left out.
         domain: Says which actions attach what to what; None leaves the actions unused.
+        note: Told in words of each name in an action that has never been anchored.
 
     Yields:
         Each frame's number, and the anchors of that frame, by name.
@@ -34,7 +43,15 @@ def track(
     """
     engine = None if domain is None else InferenceEngine(domain)
     memory, anchoring, size = Memory(), None, parameters.image_size
+    last: int | None = None
+    named: set[str] = set()
     for frame in frames:
+        if last is not None and frame.frame <= last:
+            raise AnchoringError(
+                f"frame {frame.frame} comes after frame {last}; a recording is in the order of "
+                "time, each frame once"
+            )
+        last = frame.frame
         if frame.image_size is not None and size not in (None, frame.image_size):
             raise AnchoringError(
                 f"frame {frame.frame} is {frame.image_size[0]} x {frame.image_size[1]} px, "
@@ -48,8 +65,48 @@ def track(
         anchors = anchoring.update(frame.detections, attachments)
         yield frame.frame, anchors
         if engine is not None:
+            named.update(anchor.name for anchor in anchors)
+            for action, name in _strangers(frame.actions, named):
+                named.add(name)
+                if note is not None:
+                    note(
+                        f"frame {frame.frame}: ({action.name} …) names {name}, which has not been "
+                        "anchored; what it is done with stays where it is"
+                    )
             outcomes = [_outcome(action) for action in frame.actions]
             memory = engine.step(memory, map(_percept, anchors), outcomes)
+
+
+def read_parameters(path: Path | None, tau: float | None = None) -> AnchoringParameters:
+    """Give the anchoring's parameters from a YAML file; the defaults for what it leaves out.
+
+    Args:
+        path: A mapping of parameter names to values; None has the defaults.
+        tau: Squared px; goes before the file's.
+
+    Raises:
+        UsageError: The file cannot be read, or is no YAML mapping.
+        AnchoringError: A parameter is unknown or out of range.
+    """
+    values: object = {}
+    if path is not None:
+        try:
+            values = yaml.safe_load(path.read_text(encoding="utf-8"))
+        except (OSError, UnicodeDecodeError) as error:
+            raise UsageError(f"{path}: cannot be read: {error}") from error
+        except yaml.YAMLError as error:
+            raise UsageError(f"{path}: is no YAML: {error}") from error
+    if not isinstance(values, dict):
+        raise UsageError(f"{path}: expected lines such as `tau: 6500`")
+    return AnchoringParameters.from_mapping(values if tau is None else values | {"tau": tau})
+
+
+def _strangers(
+    actions: Iterable[RecordedAction], named: Collection[str]
+) -> list[tuple[RecordedAction, str]]:
+    """Give each name in an action that has stood for nothing so far."""
+    found = {name: action for action in actions for name in action.args if name not in named}
+    return [(action, name) for name, action in found.items()]
 
 
 def _outcome(action: RecordedAction) -> Outcome:

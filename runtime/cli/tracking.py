@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -21,20 +22,26 @@ def track(
         Path | None, typer.Option(help="Says which actions attach what; without it, none do.")
     ] = None,
     tau: Annotated[
-        float, typer.Option(help="Squared px up to which a detection is still the same object.")
-    ] = 6500,
+        float | None,
+        typer.Option(help="Squared px up to which a detection is still the same object: 6500."),
+    ] = None,
+    anchoring: Annotated[
+        Path | None, typer.Option(help="YAML with more of the anchoring's parameters.")
+    ] = None,
     out: Annotated[
         Path | None, typer.Option(help="Where to write; standard output if left out.")
     ] = None,
 ) -> None:
     """Anchor recorded detections: where every object is, seen or hidden, frame by frame."""
-    from aapa import AnchoringParameters
     from aapa.jsonl import anchors_line, read_frames
+    from runtime.tracking import read_parameters
     from runtime.tracking import track as anchored
 
-    parameters = AnchoringParameters(tau=tau)
+    parameters = read_parameters(anchoring, tau)
     rules = None if domain is None else load(domain)
     with sink(out) as lines:
-        for frame, anchors in anchored(read_frames(detections), parameters, rules):
+        for frame, anchors in anchored(
+            read_frames(detections), parameters, rules, partial(typer.echo, err=True)
+        ):
             lines.write(anchors_line(frame, anchors) + "\n")
             lines.flush()

@@ -309,3 +309,37 @@ def test_base_space_without_positions_is_refused():
 def test_a_broken_camera_is_refused():
     with pytest.raises(AnchoringError, match="focal length"):
         Anchoring().update([], (), dataclasses.replace(above(0.0), focal_px=-1.0))
+
+
+def test_an_anchor_counts_for_how_many_frames_it_was_seen_or_missed():
+    anchoring = Anchoring()
+    seen = [Detection("cone", (100, 100, 120, 120))]
+    streaks = []
+    for frame in (seen, seen, seen, [], [], seen, []):
+        anchoring.update(frame)
+        streaks.append(anchoring.anchors[0].streak)
+    assert streaks == [1, 2, 3, -1, -2, 1, -1]
+
+
+def test_the_reason_of_a_miss_tells_for_how_long():
+    anchoring = Anchoring()
+    for _ in range(8):
+        anchoring.update([Detection("cone", (100, 100, 120, 120))])
+    anchoring.update([])
+    first = anchoring.anchors[0].reason
+    anchoring.update([])
+    second = anchoring.anchors[0].reason
+    assert first.startswith("It is not seen and nothing explains why")
+    assert second.startswith("It is not seen for 2 frames and nothing explains why")
+
+
+def test_a_hidden_child_s_streak_goes_on_while_it_is_carried():
+    anchoring = Anchoring()
+    cone, ball = Detection("cone", (100, 100, 140, 150)), Detection("ball", (110, 120, 125, 135))
+    for _ in range(4):
+        anchoring.update([cone, ball])
+    for shift in range(3):
+        moved = Detection("cone", (100 + shift, 100, 140 + shift, 150))
+        anchoring.update([moved], [("ball-1", "cone-1")])
+    child = next(a for a in anchoring.anchors if a.name == "ball-1")
+    assert (child.status, child.streak) == ("attached", -3)

@@ -4,11 +4,13 @@ import dataclasses
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from aapa.camera import Camera
 from aapa.detections import Detection
 from aapa.errors import AnchoringError
-from aapa.validation import check_camera, checked_detections
+from aapa.validation import _checked, _is_plain, check_camera, checked_detections
 
 BOX = (10, 10, 30, 40)
 
@@ -82,3 +84,22 @@ def test_a_camera_that_cannot_project_is_refused(change, text):
     check_camera(CAMERA)
     with pytest.raises(AnchoringError, match=text):
         check_camera(dataclasses.replace(CAMERA, **change))
+
+
+def test_what_is_in_order_is_handed_on_as_it_is():
+    plain = Detection("cone", (1.0, 2.0, 3.0, 4.0), 0.5)
+    assert checked_detections([plain], "image")[0] is plain
+
+
+@given(
+    st.tuples(*[st.one_of(st.integers(-5, 5), st.floats(), st.none(), st.booleans())] * 4),
+    st.one_of(st.floats(), st.integers(-1, 2), st.none()),
+)
+def test_the_quick_look_lets_nothing_pass_that_the_close_look_refuses(box, score):
+    detection = Detection("cone", box, score)
+    try:
+        close = _checked(1, detection, "image")
+    except AnchoringError:
+        assert not _is_plain(detection, "image")
+    else:
+        assert not _is_plain(detection, "image") or close == detection

@@ -7,10 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from aapa import AnchoringError, AnchoringParameters
-from aapa.jsonl import RecordedFrame, read_frames
+from aapa import AnchoringError, AnchoringParameters, Detection
+from aapa.jsonl import RecordedAction, RecordedFrame, read_frames
 from icarus_lite import load_domain
-from runtime.tracking import track
+from runtime.errors import UsageError
+from runtime.tracking import read_parameters, track
 
 SNITCH = [100, 100, 120, 120]
 
@@ -76,3 +77,53 @@ def test_the_image_size_must_not_change() -> None:
     frames = [RecordedFrame(0, (), image_size=(320, 240)), RecordedFrame(1, (), image_size=(9, 9))]
     with pytest.raises(AnchoringError, match="frame 1 is 9 x 9 px"):
         list(track(frames, AnchoringParameters()))
+
+
+@pytest.mark.parametrize("numbers", [(0, 2, 1), (0, 1, 1)])
+def test_frames_out_of_order_are_refused(numbers: tuple[int, ...]) -> None:
+    frames = [RecordedFrame(number, ()) for number in numbers]
+    with pytest.raises(AnchoringError, match=r"frame 1 comes after frame [12]; a recording is in"):
+        list(track(frames, AnchoringParameters()))
+
+
+def test_an_action_that_names_what_was_never_seen_is_told_once(cater: Path) -> None:
+    cone = Detection("cone", (90, 85, 130, 125))
+    action = RecordedAction("contain", ("cone-1", "snitch-9"))
+    frames = [RecordedFrame(n, (cone,), (action,) if n > 1 else ()) for n in range(5)]
+    notes: list[str] = []
+    anchored = list(track(frames, AnchoringParameters(), load_domain(cater), notes.append))
+    assert [anchor.name for anchor in anchored[-1][1]] == ["cone-1"]
+    assert len(notes) == 1
+    assert notes[0].startswith("frame 2: (contain …) names snitch-9, which has not been anchored")
+
+
+def test_the_parameters_come_from_a_file_and_tau_goes_before_it(tmp_path: Path) -> None:
+    path = tmp_path / "anchoring.yaml"
+    path.write_text("tau: 900\nconfidence_gain: 0.25\nunique_types: [snitch]\n")
+    assert read_parameters(None) == AnchoringParameters()
+    parameters = read_parameters(path)
+    assert (parameters.tau, parameters.confidence_gain) == (900, 0.25)
+    assert parameters.unique_types == {"snitch"}
+    assert read_parameters(path, 50.0).tau == 50
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("tau: [", "is no YAML"),
+        ("- 1", "expected lines such as `tau: 6500`"),
+        ("tua: 5", "unknown anchoring parameter 'tua'; did you mean 'tau'"),
+        ("tau: -5", "tau is -5; it has to be above 0"),
+        ("cost: nearest", "cost is 'nearest'"),
+    ],
+)
+def test_a_wrong_file_of_parameters_is_refused(tmp_path: Path, text: str, reason: str) -> None:
+    path = tmp_path / "anchoring.yaml"
+    path.write_text(text)
+    with pytest.raises((UsageError, AnchoringError), match=reason):
+        read_parameters(path)
+
+
+def test_a_missing_file_of_parameters_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="cannot be read"):
+        read_parameters(tmp_path / "nowhere.yaml")

@@ -1,0 +1,19 @@
+"""Models of object permanence: each follows the snitch through a video, frame by frame.
+
+`model.py` says what a model is and what it is handed, `catalogue.py` knows all by name.
+"""
+
+from __future__ import annotations
+
+from aapa.lacater.models.catalogue import PAPER_MODELS, model_named, models_named
+from aapa.lacater.models.model import ActionReport, Frame, Model, Tracker
+
+__all__ = [
+    "PAPER_MODELS",
+    "ActionReport",
+    "Frame",
+    "Model",
+    "Tracker",
+    "model_named",
+    "models_named",
+]

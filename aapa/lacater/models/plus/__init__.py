@@ -1,0 +1,17 @@
+"""`aapa-plus`: anchoring the snitch with geometry, and knowing what moves and what rests.
+
+`ideas` lists what can be switched off, `tracker` puts it all together. `solids`, `ground` and
+`calibration` are the floor as the camera sees it; `things` remembers what was seen of each object
+and averages at rest, `paths` follows one move to its end, `carrying` is the child in its
+container, `containment` infers that there is one.
+
+What it takes for granted, beyond what AAPA does: what size CATER's classes are, its lens and how
+its things speed up and slow down. It does not know where the camera is, it finds that out.
+"""
+
+from __future__ import annotations
+
+from aapa.lacater.models.plus.ideas import Ideas
+from aapa.lacater.models.plus.tracker import BeyondAapa
+
+__all__ = ["BeyondAapa", "Ideas"]

@@ -1,0 +1,155 @@
+"""The table of an evaluation: mIoU and mL2 by task, for the eye and as JSON."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from rich.box import SIMPLE_HEAD
+from rich.table import Table
+
+from aapa.lacater.layout import PerceptionKind
+from aapa.lacater.metric import TASKS, Mean, VideoScore, table_row
+from aapa.lacater.models import model_named
+from runtime.cater.evaluation import Job, VideoResult
+
+_DIGITS = 6
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One model's line of the table.
+
+    Args:
+        model: Its name.
+        parameters: What there was to choose.
+        miou: Mean intersection over union, %, by task.
+        ml2: Mean distance of the box centres, px, by task.
+        miou_exact: As `miou`, against the boxes before rounding; None where there are none.
+        ml2_exact: As `ml2`, against those.
+    """
+
+    model: str
+    parameters: Mapping[str, object]
+    miou: Mapping[str, Mean]
+    ml2: Mapping[str, Mean]
+    miou_exact: Mapping[str, Mean] | None = None
+    ml2_exact: Mapping[str, Mean] | None = None
+
+    def to_json(self) -> dict[str, object]:
+        """Give the row as it stands in the JSON document."""
+        entry: dict[str, object] = {
+            "model": self.model,
+            "parameters": dict(self.parameters),
+            "miou": _pairs(self.miou),
+            "ml2": _pairs(self.ml2),
+        }
+        if self.miou_exact is not None and self.ml2_exact is not None:
+            entry["miou_exact"] = _pairs(self.miou_exact)
+            entry["ml2_exact"] = _pairs(self.ml2_exact)
+        return entry
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """What an evaluation found.
+
+    Args:
+        perception: Whose detections the models got.
+        videos: How many videos the table is over.
+        rows: One a model.
+        skipped: The videos left out, each with the reason.
+    """
+
+    perception: PerceptionKind
+    videos: int
+    rows: tuple[Row, ...]
+    skipped: Mapping[str, str]
+
+    def to_json(self) -> dict[str, object]:
+        """Give the document of `icarus cater evaluate --json`."""
+        return {
+            "videos": self.videos,
+            "perception": str(self.perception),
+            "rows": [row.to_json() for row in self.rows],
+            "skipped": [{"video": video, "reason": why} for video, why in self.skipped.items()],
+        }
+
+    def tables(self) -> tuple[Table, ...]:
+        """Give the tables of mIoU and mL2, and of mIoU before rounding where it is known."""
+        name = "detections" if self.perception is PerceptionKind.OD else "perfect perception"
+        scope = f"{self.videos} videos, {name}"
+        tables = [
+            _table(f"mIoU, % ± SEM ({scope})", {row.model: row.miou for row in self.rows}),
+            _table(f"mL2, px ± SEM ({scope})", {row.model: row.ml2 for row in self.rows}),
+        ]
+        exact = {row.model: row.miou_exact for row in self.rows if row.miou_exact is not None}
+        if exact:
+            title = f"mIoU against the boxes before rounding, % ± SEM ({scope})"
+            tables.append(_table(title, exact))
+        return tuple(tables)
+
+    def skipped_lines(self, most: int = 10) -> tuple[str, ...]:
+        """Give what to tell of the videos left out: how many, and why."""
+        if not self.skipped:
+            return ()
+        lines = [f"{why}" for why in list(self.skipped.values())[:most]]
+        rest = len(self.skipped) - len(lines)
+        return (
+            f"{len(self.skipped)} of {self.videos + len(self.skipped)} videos were skipped:",
+            *(
+                f"  {why} ({count} times)" if count > 1 else f"  {why}"
+                for why, count in Counter(lines).items()
+            ),
+            *((f"  and {rest} more; --json lists them all",) if rest else ()),
+        )
+
+
+def report_of(job: Job, results: Sequence[VideoResult]) -> Report:
+    """Make the table of all results; it does not depend on their order."""
+    ordered = sorted(results, key=lambda result: result.video)
+    scored = [result for result in ordered if not result.skipped]
+    return Report(
+        job.perception,
+        len(scored),
+        tuple(_row(name, number, scored) for number, name in enumerate(job.models)),
+        {result.video: result.skipped for result in ordered if result.skipped},
+    )
+
+
+def _row(name: str, number: int, results: Sequence[VideoResult]) -> Row:
+    miou, ml2 = table_row([result.scores[number] for result in results])
+    exact: list[VideoScore] = [
+        result.exact_scores[number] for result in results if result.exact_scores
+    ]
+    parameters = model_named(name).parameters
+    # Exact scores of some of the videos only would not compare with the others' row.
+    if not results or len(exact) < len(results):
+        return Row(name, parameters, miou, ml2)
+    return Row(name, parameters, miou, ml2, *table_row(exact))
+
+
+def _pairs(means: Mapping[str, Mean]) -> dict[str, list[float | None]]:
+    return {task: [_number(means[task].mean), _number(means[task].sem)] for task in TASKS}
+
+
+def _number(value: float) -> float | None:
+    return None if math.isnan(value) else round(value, _DIGITS)
+
+
+def _table(title: str, rows: Mapping[str, Mapping[str, Mean]]) -> Table:
+    table = Table(title=title, title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
+    table.add_column("model", no_wrap=True)
+    for task in TASKS:
+        table.add_column(task, justify="right", no_wrap=True)
+    for model, means in rows.items():
+        table.add_row(model, *(_cell(means[task]) for task in TASKS))
+    return table
+
+
+def _cell(mean: Mean) -> str:
+    if math.isnan(mean.mean):
+        return "-"
+    return f"{mean.mean:.2f}" if math.isnan(mean.sem) else f"{mean.mean:.2f} ± {mean.sem:.2f}"
