@@ -9,12 +9,14 @@ from operator import attrgetter
 from aapa.alignment import align, squared_distance
 from aapa.anchors import Anchor
 from aapa.camera import Camera
+from aapa.costs import CENTRE
 from aapa.detections import Box, Detection
 from aapa.hierarchy import parents_of
 from aapa.hypotheses import Move, explain, move_between
 from aapa.names import NameRegister
 from aapa.parameters import AnchoringParameters
 from aapa.sightings import Sightings
+from aapa.singles import align_singles
 from aapa.validation import check_camera, checked_detections
 from aapa.view import View
 
@@ -96,7 +98,7 @@ class Anchoring:
         """
         self.state = step(self.state, detections, attachments, camera, self.parameters)
         least = self.parameters.min_report_confidence
-        return tuple(anchor for anchor in self.state.anchors if anchor.confidence >= least)
+        return tuple([anchor for anchor in self.state.anchors if anchor.confidence >= least])
 
 
 def step(
@@ -148,29 +150,48 @@ def _aligned(
     frame: Sightings,
 ) -> tuple[list[Anchor], list[Anchor], NameRegister]:
     """Give the anchors with a detection, old and new, those without, and the names given."""
-    order = _order(detections)
     parameters = frame.parameters
+    if parameters.space == "image" and parameters.comparison is CENTRE:
+        singles = align_singles(anchors, detections, parameters.tau)
+        if singles is not None:
+            seen = [frame.of_old(*pair) for pair in singles.pairs]
+            new, register = _named(singles.appeared, anchors, register, frame)
+            return seen + new, singles.lost, register
+    order = _order(detections)
     old = [frame.place(anchor) for anchor in anchors]
-    new = [frame.place(detections[index]) for index in order]
-    alignment = align(old, new, parameters.tau, parameters.comparison)
+    found = [frame.place(detections[index]) for index in order]
+    alignment = align(old, found, parameters.tau, parameters.comparison)
     seen = [
         frame.of_old(
             anchors[row],
             detections[order[column]],
-            squared_distance(old[row].centre, new[column].centre),
+            squared_distance(old[row].centre, found[column].centre),
         )
         for row, column in alignment.pairs
     ]
-    if alignment.appeared:
-        anchored = {anchor.name for anchor in anchors}
-        # New objects are numbered as the detector lists them.
-        for index in sorted(order[column] for column in alignment.appeared):
-            detection = detections[index]
-            unique = detection.type in parameters.unique_types
-            name, register = register.with_new(detection.type, unique=unique, anchored=anchored)
-            anchored.add(name)
-            seen.append(frame.of_new(name, detection))
-    return seen, [anchors[index] for index in alignment.lost], register
+    # New objects are numbered as the detector lists them.
+    appeared = [detections[index] for index in sorted(order[n] for n in alignment.appeared)]
+    new, register = _named(appeared, anchors, register, frame)
+    return seen + new, [anchors[index] for index in alignment.lost], register
+
+
+def _named(
+    appeared: Sequence[Detection],
+    anchors: Sequence[Anchor],
+    register: NameRegister,
+    frame: Sightings,
+) -> tuple[list[Anchor], NameRegister]:
+    """Give the anchors of what has appeared, and the register with their names."""
+    if not appeared:
+        return [], register
+    anchored = {anchor.name for anchor in anchors}
+    new: list[Anchor] = []
+    for detection in appeared:
+        unique = detection.type in frame.parameters.unique_types
+        name, register = register.with_new(detection.type, unique=unique, anchored=anchored)
+        anchored.add(name)
+        new.append(frame.of_new(name, detection))
+    return new, register
 
 
 def _order(detections: Sequence[Detection]) -> Sequence[int]:

@@ -17,7 +17,7 @@ _CAP = 1 + 1e-9
 
 _DENSE_SIDE = 150
 
-_SAMPLES = 64
+_SAMPLES = 16
 _CROWD = 0.1
 """Share of all pairs that is near. Beyond, listing the pairs costs more than a full matrix."""
 

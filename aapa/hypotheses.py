@@ -21,7 +21,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from aapa.anchors import Anchor, AnchorStatus
+from aapa.anchors import Anchor, AnchorStatus, anchor_of
 from aapa.boxes import centre_of, moved
 from aapa.detections import Box, Position
 from aapa.occluders import Occluders
@@ -142,7 +142,7 @@ def _changed(
     streak: int | None = None,
 ) -> Anchor:
     # Written out, since `dataclasses.replace` would take a fifth of the time of a whole frame.
-    return Anchor(
+    return anchor_of(
         anchor.name,
         anchor.type,
         anchor.box if box is None else box,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NoReturn
@@ -51,8 +51,15 @@ class RecordedFrame:
     extra: Mapping[str, object] = field(default_factory=dict)
 
 
-def read_frames(path: Path) -> Iterator[RecordedFrame]:
+def read_frames(
+    path: Path, refused: Callable[[AnchoringError], None] | None = None
+) -> Iterator[RecordedFrame]:
     """Give the frames of a recording, read as they are asked for; blank lines are passed over.
+
+    Args:
+        path: The recording.
+        refused: Told of each malformed line, which is then passed over; without it, the first
+            one is raised.
 
     Raises:
         AnchoringError: The file cannot be opened.
@@ -62,10 +69,23 @@ def read_frames(path: Path) -> Iterator[RecordedFrame]:
         stream = path.open("rb")
     except OSError as error:
         raise AnchoringError(f"cannot read {path}: {error.strerror}") from error
+    last: int | None = None
     with stream:
         for number, line in enumerate(stream, start=1):
-            if line.strip():
-                yield _Line(str(path), number).frame(line)
+            if not line.strip():
+                continue
+            try:
+                place = _Line(str(path), number)
+                frame = place.frame(line)
+                if last is not None and frame.frame <= last:
+                    place.refuse_order(frame.frame, last)
+            except RecordingError as error:
+                if refused is None:
+                    raise
+                refused(error)
+                continue
+            last = frame.frame
+            yield frame
 
 
 def anchors_line(frame: int, anchors: Iterable[Anchor]) -> str:
@@ -116,6 +136,13 @@ class _Line:
             tuple(self._action(item) for item in self._list(entry, "actions", default=[])),
             self._image_size(entry),
             {key: value for key, value in entry.items() if key not in _FRAME_KEYS},
+        )
+
+    def refuse_order(self, frame: int, last: int) -> NoReturn:
+        self._refuse(
+            f"frame {frame} comes after frame {last}; a recording is in the order of time, "
+            "each frame once",
+            "frame",
         )
 
     def _detections(self, entry: Mapping[str, object]) -> tuple[Detection, ...]:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from aapa.anchors import Anchor, AnchorStatus
+from aapa.anchors import Anchor, AnchorStatus, anchor_of
 from aapa.costs import Place
 from aapa.detections import Box, Detection, Position
 from aapa.parameters import AnchoringParameters
@@ -40,7 +40,7 @@ class Sightings:
 
     def of_body(self, name: str, detection: Detection, old: Anchor | None) -> Anchor:
         """Give the anchor of a body that reports its own place."""
-        streak = 1 if old is None else _longer(old.streak)
+        streak = 1 if old is None else max(old.streak, 0) + 1
         return self._visible(name, detection, 1.0, "It reports its own place.", streak)
 
     def of_new(self, name: str, detection: Detection) -> Anchor:
@@ -70,7 +70,8 @@ class Sightings:
         size = detection.size
         if size is None and position is not None:
             size = self.view.size_of(detection.box, detection.position)
-        return Anchor(
+        streak = anchor.streak
+        return anchor_of(
             anchor.name,
             anchor.type,
             box,
@@ -80,8 +81,8 @@ class Sightings:
             position,
             size or anchor.size,
             self.number,
-            self._how_far(squared),
-            _longer(anchor.streak),
+            self._how_far(squared) if squared else "It is seen at its last place.",
+            streak + 1 if streak > 0 else 1,
         )
 
     def without_report(self, body: Anchor) -> Anchor:
@@ -101,7 +102,7 @@ class Sightings:
     def _visible(
         self, name: str, detection: Detection, confidence: float, reason: str, streak: int
     ) -> Anchor:
-        return Anchor(
+        return anchor_of(
             name,
             detection.type,
             detection.box,
@@ -123,14 +124,8 @@ class Sightings:
         return anchor.status is not AnchorStatus.VISIBLE and squared > self.parameters.radius**2 / 4
 
     def _how_far(self, squared: float) -> str:
-        if squared == 0:
-            return "It is seen at its last place."
         unit = "px" if self.parameters.space == "image" else "m"
         return f"It is seen {math.sqrt(squared):.3g} {unit} from its last place."
-
-
-def _longer(streak: int) -> int:
-    return streak + 1 if streak > 0 else 1
 
 
 def _mixed(old: Box, new: Box, gain: float) -> Box:

@@ -25,12 +25,10 @@ def checked_detections(detections: Iterable[Detection], space: Space) -> tuple[D
         AnchoringError: A detection is malformed (the text says which and why), or two carry
             the same name.
     """
-    result = tuple(
-        [
-            detection if _is_plain(detection, space) else _checked(number, detection, space)
-            for number, detection in enumerate(detections, start=1)
-        ]
-    )
+    given = tuple(detections)
+    if space == "image" and _are_plain(given):
+        return given
+    result = tuple([_checked(number, each, space) for number, each in enumerate(given, start=1)])
     names = [detection.name for detection in result if detection.name is not None]
     if len(set(names)) != len(names):
         twice = next(name for name in names if names.count(name) > 1)
@@ -64,32 +62,31 @@ def check_camera(camera: Camera) -> None:
         )
 
 
-def _is_plain(detection: object, space: Space) -> bool:
-    """Tell whether a detection is as most are, in order and with nothing to convert."""
-    if not isinstance(detection, Detection):
-        return False
-    if (
-        space != "image"
-        or detection.position is not None
-        or detection.size is not None
-        or detection.name is not None
-    ):
-        return False
-    corners: Sequence[float] = detection.box
-    score = detection.score
-    if type(corners) is not tuple or len(corners) != 4 or type(score) is not float:
-        return False
-    x1, y1, x2, y2 = corners
+def _are_plain(detections: Sequence[object]) -> bool:
+    """Tell whether all are as most are: in order, with nothing to convert, and no bodies."""
     most = _LARGEST_COORDINATE
-    return (
-        type(detection.type) is str
-        and detection.type != ""
-        and type(x1) is type(y1) is type(x2) is type(y2) is float
-        # NaN fails every comparison.
-        and -most <= x1 <= x2 <= most
-        and -most <= y1 <= y2 <= most
-        and 0 <= score <= 1
-    )
+    for detection in detections:
+        if type(detection) is not Detection:
+            return False
+        corners: Sequence[float] = detection.box
+        if type(corners) is not tuple or len(corners) != 4:
+            return False
+        x1, y1, x2, y2 = corners
+        score = detection.score
+        if not (
+            # NaN fails every comparison.
+            type(x1) is type(y1) is type(x2) is type(y2) is type(score) is float
+            and -most <= x1 <= x2 <= most
+            and -most <= y1 <= y2 <= most
+            and 0 <= score <= 1
+            and detection.position is None
+            and detection.size is None
+            and detection.name is None
+            and type(detection.type) is str
+            and detection.type != ""
+        ):
+            return False
+    return True
 
 
 def _checked(number: int, detection: Detection, space: Space) -> Detection:

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from aapa.camera import Camera
 from aapa.detections import Detection
 from aapa.errors import AnchoringError
-from aapa.validation import _checked, _is_plain, check_camera, checked_detections
+from aapa.validation import _are_plain, _checked, check_camera, checked_detections
 
 BOX = (10, 10, 30, 40)
 
@@ -100,6 +100,6 @@ def test_the_quick_look_lets_nothing_pass_that_the_close_look_refuses(box, score
     try:
         close = _checked(1, detection, "image")
     except AnchoringError:
-        assert not _is_plain(detection, "image")
+        assert not _are_plain([detection])
     else:
-        assert not _is_plain(detection, "image") or close == detection
+        assert not _are_plain([detection]) or close == detection

@@ -17,7 +17,20 @@ import pytest
 from icarus_lite import __version__
 from runtime.cli import main
 
-COMMANDS = ("check", "controller", "fmt", "infer", "lsp", "pddl", "plan", "run", "test", "track")
+COMMANDS = (
+    "cater",
+    "check",
+    "controller",
+    "explain-rule",
+    "fmt",
+    "infer",
+    "lsp",
+    "pddl",
+    "plan",
+    "run",
+    "test",
+    "track",
+)
 DRY = "192.0.2.1"  # an address for documentation: nobody is ever there
 FRAMES = [
     {

@@ -28,6 +28,7 @@ class Bond:
         trim: Of the child's box.
         since: The container's box when the child was bound to it, px.
         child: The child's box then, px.
+        rested: The child's box when the container was last at rest, px.
     """
 
     root: str
@@ -35,6 +36,7 @@ class Bond:
     trim: Trim
     since: Box
     child: Box
+    rested: Box
 
 
 def trim_of(view: GroundView, place: Place, box: Box, share: float) -> Trim:
@@ -46,10 +48,13 @@ def trim_of(view: GroundView, place: Place, box: Box, share: float) -> Trim:
         box: As it was seen, px.
         share: Which share of the difference is believed.
 
-    Raises:
-        ValueError: The place is not before the camera.
+    Returns:
+        No trim at all where the place is not before the camera.
     """
-    a, b, c, d = view.box(SNITCH_SOLID, place)
+    try:
+        a, b, c, d = view.box(SNITCH_SOLID, place)
+    except ValueError:
+        return NO_TRIM
     scale = share * view.depth(place, SNITCH_SOLID.low) / view.focal
     return (
         (box[0] - a) * scale,
@@ -59,13 +64,15 @@ def trim_of(view: GroundView, place: Place, box: Box, share: float) -> Trim:
     )
 
 
-def trimmed(view: GroundView, place: Place, trim: Trim, lift: float = 0.0) -> Box:
+def trimmed(view: GroundView, place: Place, trim: Trim, lift: float = 0.0) -> Box | None:
     """Give the box of the child at a place, px, cut off at the image's border.
 
-    Raises:
-        ValueError: The place is not before the camera.
+    None where the place is not before the camera.
     """
-    a, b, c, d = view.box(SNITCH_SOLID, place, lift)
+    try:
+        a, b, c, d = view.box(SNITCH_SOLID, place, lift)
+    except ValueError:
+        return None
     scale = view.focal / view.depth(place, SNITCH_SOLID.low + lift)
     return view.clipped(
         (a + trim[0] * scale, b + trim[1] * scale, c + trim[2] * scale, d + trim[3] * scale)

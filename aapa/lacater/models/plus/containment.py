@@ -16,7 +16,8 @@ from aapa.lacater.models.plus.solids import Solid
 REACH: Final = 0.3
 """Nearer than this, in units of the scene, nothing stands beside a cone that could hold it."""
 
-_FITS_PX: Final = 2.5
+FITS_PX: Final = 2.5
+"""The edges of a thing on the floor are no farther than this from where they should be."""
 
 
 def container_at(
@@ -46,17 +47,32 @@ def container_at(
     return found
 
 
-def on_floor(view: GroundView, solid: Solid, box: Box) -> Place | None:
-    """Give where a solid stands; None where its box shows that it is not on the floor."""
+def on_floor(view: GroundView, solid: Solid, box: Box, fits: float = FITS_PX) -> Place | None:
+    """Give where a solid stands; None where its box shows that it is not on the floor.
+
+    Args:
+        view: The camera.
+        solid: What it is.
+        box: Where it is seen, px.
+        fits: How far an edge may be from where it should be, px.
+    """
     place = view.place(solid, box)
-    if place is None:
-        return None
+    worst = None if place is None else _worst(view, solid, box, place)
+    return place if worst is not None and worst < fits else None
+
+
+def misfit(view: GroundView, solid: Solid, box: Box) -> float | None:
+    """Give how far the worst edge of a box is from where it should be on the floor, px."""
+    place = view.place(solid, box)
+    return None if place is None else _worst(view, solid, box, place)
+
+
+def _worst(view: GroundView, solid: Solid, box: Box, place: Place) -> float | None:
     try:
         expected = view.box(solid, place)
     except ValueError:
         return None
     free = view.free_edges(box)
-    worst = max(
+    return max(
         abs(edge - other) * weight for edge, other, weight in zip(box, expected, free, strict=True)
     )
-    return place if worst < _FITS_PX else None

@@ -13,7 +13,7 @@ from aapa.lacater.generator.motion import Profile, pick_place, slide
 from aapa.lacater.models.plus.ground import Place
 
 _LEAST: Final = 2e-3
-"""Below this sum of squared shares a way is not known well enough to be followed."""
+"""Below this spread of the shares a way is not known well enough to be followed."""
 
 
 class Path:
@@ -26,13 +26,15 @@ class Path:
         lifted: It is picked and placed, not slid.
     """
 
-    __slots__ = ("_across", "_ahead", "_profile", "_weight", "end", "origin", "start")
+    __slots__ = ("_across", "_ahead", "_count", "_profile", "_shares", "_squares", "end", "start")
 
     def __init__(self, origin: Place, start: int, end: int, *, lifted: bool) -> None:
         moves = (pick_place if lifted else slide)(end - start + 1)
         self._profile: Profile = moves.filmed
-        self.origin, self.start, self.end = origin, start, end
-        self._across = self._ahead = self._weight = 0.0
+        self.start, self.end = start, end
+        # Sums over what was seen; where it stood at first counts as one sighting.
+        self._count, self._shares, self._squares = 1.0, 0.0, 0.0
+        self._across, self._ahead = [origin[0], 0.0], [origin[1], 0.0]
 
     def share(self, frame: int) -> float:
         """Give which share of the way has been gone at a frame."""
@@ -45,16 +47,32 @@ class Path:
     def add(self, frame: int, place: Place) -> None:
         """Take in where it was seen at a frame."""
         share = self.share(frame)
-        self._across += share * (place[0] - self.origin[0])
-        self._ahead += share * (place[1] - self.origin[1])
-        self._weight += share * share
+        self._count += 1.0
+        self._shares += share
+        self._squares += share * share
+        for sums, value in ((self._across, place[0]), (self._ahead, place[1])):
+            sums[0] += value
+            sums[1] += share * value
+
+    @property
+    def origin(self) -> Place:
+        """Where it began, as well as that is known by now."""
+        return self._at(0.0) or (self._across[0] / self._count, self._ahead[0] / self._count)
 
     def place(self, frame: int) -> Place | None:
         """Give where it is at a frame; None while the way is not known."""
         share = self.share(frame)
-        if share == 0.0:
-            return self.origin
-        if self._weight < _LEAST:
+        return self.origin if share == 0.0 else self._at(share)
+
+    def _at(self, share: float) -> Place | None:
+        """Give the point of the fitted line at which a share of the way is gone."""
+        spread = self._count * self._squares - self._shares * self._shares
+        if spread < _LEAST:
             return None
-        share /= self._weight
-        return self.origin[0] + share * self._across, self.origin[1] + share * self._ahead
+        # The weights of the mean and of the slope of a straight line fitted by least squares.
+        mean = (self._squares - share * self._shares) / spread
+        slope = (share * self._count - self._shares) / spread
+        return (
+            mean * self._across[0] + slope * self._across[1],
+            mean * self._ahead[0] + slope * self._ahead[1],
+        )

@@ -52,7 +52,9 @@ def solid_of(number: int) -> Solid | None:
     size, _, shape, _ = CLASS_NAMES[number].split("_")
     radius = _RADII[size]
     if shape == "cone":
-        return Solid(True, round(radius * _FOOT, 9), _HOVER, _HOVER + 2 * radius)
+        return Solid(
+            is_cone=True, radius=round(radius * _FOOT, 9), low=_HOVER, top=_HOVER + 2 * radius
+        )
     if shape == "sphere":
-        return Solid(False, radius, radius)
+        return Solid(is_cone=False, radius=radius, low=radius)
     return None

@@ -25,8 +25,8 @@ class Thing:
         "_far_count",
         "_strays",
         "_sum",
-        "box",
         "free",
+        "last",
         "missed",
         "moving",
         "number",
@@ -36,7 +36,7 @@ class Thing:
 
     def __init__(self, number: int) -> None:
         self.number = number
-        self.box: list[float] | None = None
+        self.last: Box | None = None
         """The last one seen, px."""
         self.moving = False
         """An action on it, or on what it stands in, is under way."""
@@ -59,10 +59,12 @@ class Thing:
             x1, y1, x2, y2 = self._sum
             n = self.seen
             return x1 / n, y1 / n, x2 / n, y2 / n
-        if self.box is None:
-            return None
-        x1, y1, x2, y2 = self.box
-        return x1, y1, x2, y2
+        return self.last
+
+    @property
+    def is_settled(self) -> bool:
+        """It is seen, and stands still."""
+        return not self.missed and self.seen > 1 and not self.roaming
 
     def set_off(self) -> None:
         """It begins to move, or may be somewhere else."""
@@ -74,7 +76,9 @@ class Thing:
         self.moving, self.roaming = False, False
         self._forget()
 
-    def offer(self, boxes: Sequence[Sequence[float]], strict: bool, flicker: float) -> int | None:
+    def offer(
+        self, boxes: Sequence[Sequence[float]], flicker: float, *, strict: bool
+    ) -> int | None:
         """Look for it among the boxes of its class in a frame.
 
         Args:
@@ -90,19 +94,19 @@ class Thing:
             return None
         index = self._nearest(boxes)
         box = boxes[index]
-        if strict and self.box is not None and not self.free and not self._believable(box):
+        if strict and self.last is not None and not self.free and not self._believable(box):
             self.missed += 1
             return None
         self._take(box, flicker)
         return index
 
     def _believable(self, box: Sequence[float]) -> bool:
-        assert self.box is not None
+        assert self.last is not None
         if self.seen and not self.moving and not self.roaming:
             gate = _NEAR_AT_REST_PX
         else:
             gate = _FASTEST_PX * (1 + self.missed)
-        if distance(self.box, box) <= gate:
+        if distance(self.last, box) <= gate:
             self._far_count = 0
             return True
         # What is seen again and again in one place is there, whatever was thought before.
@@ -112,9 +116,9 @@ class Thing:
         return self._far_count >= _CONVINCING
 
     def _nearest(self, boxes: Sequence[Sequence[float]]) -> int:
-        if len(boxes) == 1 or self.box is None:
+        if len(boxes) == 1 or self.last is None:
             return 0
-        here = self.box
+        here = self.last
         return min(range(len(boxes)), key=lambda index: distance(here, boxes[index]))
 
     def _take(self, box: Sequence[float], flicker: float) -> None:
@@ -122,7 +126,8 @@ class Thing:
             self._forget()
         if self.seen and not self.moving:
             self._notice(box, flicker)
-        self.box = list(box)
+        x1, y1, x2, y2 = box
+        self.last = x1, y1, x2, y2
         self.free, self.missed, self._far_count = False, 0, 0
         if not self.moving:
             total = self._sum

@@ -7,37 +7,33 @@ knowledge of what moves and what rests: `ideas.py` lists what can be switched of
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Final
 
 from aapa.boxes import centre_of, moved
 from aapa.detections import Box
-from aapa.hierarchy import parents_of
 from aapa.lacater.classes import SNITCH
 from aapa.lacater.generator.motion import LIFT
 from aapa.lacater.models.model import ActionReport, Frame
-from aapa.lacater.models.plus.calibration import calibrated
+from aapa.lacater.models.plus.belonging import Belonging
 from aapa.lacater.models.plus.carrying import NO_TRIM, Bond, Trim, trim_of, trimmed, untrimmed
-from aapa.lacater.models.plus.containment import container_at, on_floor
+from aapa.lacater.models.plus.containment import FITS_PX, REACH, container_at, misfit, on_floor
 from aapa.lacater.models.plus.ground import GroundView, Place
 from aapa.lacater.models.plus.ideas import Ideas
 from aapa.lacater.models.plus.paths import Path
-from aapa.lacater.models.plus.solids import SNITCH_SOLID, Solid, solid_of
+from aapa.lacater.models.plus.scenery import Boxes, Scenery
+from aapa.lacater.models.plus.solids import SNITCH_SOLID
 from aapa.lacater.models.plus.things import Thing, distance
-from aapa.lacater.video import HEIGHT, WIDTH
 
 SLID: Final = frozenset({"slide"})
+"""Actions that push a thing along the floor, with all that stands in it."""
+
 LIFTED: Final = frozenset({"pick-place", "contain"})
+"""Actions that lift a thing, and set it down elsewhere."""
 
-START_VIEW: Final = GroundView(height=5.0, pitch=0.5, focal=350.0, size=(WIDTH, HEIGHT))
-"""Where self-calibration starts; the focal length is that of CATER's lens."""
-
-_MOST_SAMPLES: Final = 40
 _TRIM_SHARE: Final = 0.6
-_HALF_PX: Final = 0.5
-_NOISY: Final = 0.45
-_FLICKER_PX: Final = 2.5
-_STEADY_PX: Final = 0.3
+_FITS_STEADY_PX: Final = 1.6
+_LONG_UNSEEN: Final = 5
 _NEAR_PX: Final = 15.0
 _INSISTS: Final = 3
 
@@ -52,43 +48,31 @@ class BeyondAapa:
 
     def __init__(self, ideas: Ideas, cast: Mapping[str, int]) -> None:
         self._ideas = ideas
-        self._things = {name: Thing(number) for name, number in cast.items()}
-        self._of_class: dict[int, list[str]] = {}
-        for name, number in cast.items():
-            self._of_class.setdefault(number, []).append(name)
-        self._snitch = self._of_class.get(SNITCH, [""])[0]
-        self._solids: dict[str, Solid] = {
-            name: solid
-            for name, number in cast.items()
-            if number != SNITCH and (solid := solid_of(number)) is not None
-        }
-        self._parents: dict[str, str] = {}
-        self._pairs: object = ()
+        self._scenery = Scenery(ideas, cast, SNITCH)
+        self._belonging = Belonging()
+        self._snitch = next((name for name, number in cast.items() if number == SNITCH), "")
         self._paths: dict[str, Path] = {}
-        self._view: GroundView | None = None
-        self._samples: list[tuple[Solid, Box]] = []
-        self._sampled = 0
         self._box: Box | None = None
         self._bond: Bond | None = None
         self._trim: Trim = NO_TRIM
-        self._at_rest = self._changed = 0
-        self._reported: dict[str, str] = {}
-        self._inferred: dict[str, str] = {}
         self._elsewhere = 0
 
     def observe(self, frame: Frame) -> Box | None:
-        """Take in one frame, and give the snitch's box, px; None until it was seen."""
+        """Take in one frame, and give the snitch's box, px; None until it was seen.
+
+        Raises:
+            AnchoringError: The attachments run in a circle, or a child has two parents.
+        """
         if self._ideas.reports:
-            if frame.attachments is not self._pairs:
-                self._pairs = frame.attachments
-                self._reported = parents_of(frame.attachments)
-                self._unite()
+            self._belonging.report(frame.attachments)
             for report in frame.actions:
                 self._hear(report, frame.number)
-        seen = self._look(frame)
-        if self._ideas.geometry:
-            self._infer(seen)
-        self._conclude(frame.number, seen)
+        if self._scenery.look(frame, self._believed):
+            self._see(frame.number)
+        elif self._box is not None:
+            if self._ideas.geometry:
+                self._infer(self._box)
+            self._reason(frame.number)
         for name in [name for name, path in self._paths.items() if path.end <= frame.number]:
             del self._paths[name]
         return None if self._box is None else rounded(self._box)
@@ -96,52 +80,53 @@ class BeyondAapa:
     @property
     def view(self) -> GroundView | None:
         """The camera as it has been found out so far."""
-        return self._view
+        return self._scenery.view
+
+    @property
+    def parents(self) -> Mapping[str, str]:
+        """What is believed to stand in what, child to parent, reported or inferred."""
+        return self._belonging.parents
+
+    # What is reported
 
     def _hear(self, report: ActionReport, frame: int) -> None:
-        if not report.args or report.args[0] not in self._things:
+        things = self._scenery.things
+        if not report.args or report.args[0] not in things:
             return
         name = report.args[0]
-        alike = self._of_class[self._things[name].number]
+        alike = self._scenery.alike(name)
         if report.status == "succeeded":
             for other in alike:
-                self._things[other].come_to_rest()
+                things[other].come_to_rest()
             return
         for other in alike:
-            self._sample(other)
-        if report.planned_end is not None and report.planned_end > frame:
-            self._set_on_path(report, frame)
+            if other not in self._belonging.parents:
+                self._scenery.keep_sample(other)
+        self._set_on_path(report, frame)
         for other in alike:
-            self._things[other].set_off()
+            things[other].set_off()
         if report.action in SLID:
-            self._free_all_in(name)
-
-    def _free_all_in(self, name: str) -> None:
-        for child, parent in self._parents.items():
-            if parent == name:
-                self._things[child].free = True
-                self._free_all_in(child)
+            for child in self._belonging.children_of(name):
+                if child in things:
+                    things[child].free = True
 
     def _set_on_path(self, report: ActionReport, frame: int) -> None:
         name, end = report.args[0], report.planned_end
-        if not self._ideas.planned_end or end is None:
+        if not self._ideas.planned_end or end is None or end <= frame:
             return
-        if report.action not in SLID | LIFTED or name in self._parents:
+        if report.action not in SLID | LIFTED or name in self._belonging.parents:
             return
         origin: Place | None = None
         if name == self._snitch:
-            if self._ideas.hidden_motion and self._box is not None:
-                origin = self._place_of_snitch()
-        elif self._bond is not None and self._bond.root == name and report.action in SLID:
-            origin = self._bond.place
-        elif self._root_of_snitch() == name and report.action in SLID:
-            self._bind(name)
-            origin = None if self._bond is None else self._bond.place
+            origin = self._place_of_snitch() if self._ideas.hidden_motion else None
+        elif report.action in SLID and name == self._root_of_snitch():
+            bond = self._bond_with(name)
+            origin = None if bond is None else bond.place
         if origin is not None:
             self._paths[name] = Path(origin, frame, end, lifted=report.action in LIFTED)
 
     def _place_of_snitch(self) -> Place | None:
-        view = self._camera()
+        view = self._scenery.camera()
         if view is None or self._box is None:
             return None
         place = view.place(SNITCH_SOLID, self._box)
@@ -149,249 +134,184 @@ class BeyondAapa:
             self._trim = trim_of(view, place, self._box, 1.0)
         return place
 
-    def _unite(self) -> None:
-        """Take together what is reported and what is inferred; a report counts for more."""
-        for child in self._reported:
-            self._inferred.pop(child, None)
-        self._parents = {**self._inferred, **self._reported}
+    # What is seen
 
-    def _infer(self, seen: bool) -> None:
-        """Find out from where things stand that the snitch is in a cone, or no longer is."""
-        outermost = self._root_of_snitch() or self._snitch
-        if seen:
-            if self._inferred:
-                self._inferred.clear()
-                self._unite()
-            return
-        for child in list(self._inferred):
-            if child != self._snitch and child in self._things and not self._things[child].missed:
-                del self._inferred[child]
-                self._unite()
-                return
-        thing = self._things.get(outermost)
-        if thing is None or not thing.missed or self._box is None or self._snitch in self._paths:
-            return
-        cones = [
-            (name, solid, box)
-            for name, solid in self._solids.items()
-            if solid.is_cone
-            and name != outermost
-            and not (other := self._things[name]).missed
-            and other.seen > 1
-            and not other.roaming
-            and name not in self._parents
-            and (box := self._seen_box(name)) is not None
-            and _around(box, self._box)
-        ]
-        if not cones:
-            return
-        view = self._camera()
-        if view is None:
-            return
-        place = view.place(SNITCH_SOLID, self._box)
-        radius = self._solids.get(outermost, SNITCH_SOLID).radius
-        if place is None:
-            return
-        container = container_at(view, place, radius, cones)
-        if container is not None:
-            self._inferred[outermost] = container
-            self._unite()
-
-    def _believed(self, boxes: list[list[int]]) -> list[list[int]]:
-        """Of boxes of the snitch, give those that show it, though it is thought to be contained."""
-        if self._snitch in self._reported:
+    def _believed(self, boxes: Boxes) -> Boxes:
+        """Of boxes of the snitch, give those that show it, though it may be contained."""
+        if self._belonging.is_reported(self._snitch):
             return [] if self._ideas.lock else boxes
-        if self._snitch not in self._inferred or self._box is None:
+        if self._snitch not in self._belonging.parents or self._box is None:
             return boxes
         here = self._box
         near = [box for box in boxes if distance(box, here) < _NEAR_PX]
         self._elsewhere = 0 if near else self._elsewhere + 1
         if near or self._elsewhere >= _INSISTS or not self._ideas.lock:
-            self._things[self._snitch].free = True
+            self._scenery.things[self._snitch].free = True
             return near or boxes
         return []
 
-    def _look(self, frame: Frame) -> bool:
-        found: dict[int, list[list[int]]] = {}
-        for number, box in zip(frame.classes.tolist(), frame.boxes.tolist(), strict=True):
-            found.setdefault(number, []).append(box)
-        seen = False
-        strict = self._ideas.rest
-        flicker = _FLICKER_PX if self._is_noisy else _STEADY_PX
-        for number, names in self._of_class.items():
-            boxes = found.get(number)
-            if boxes is None:
-                for name in names:
-                    self._things[name].missed += 1
-                continue
-            left: list[list[int]] = boxes
-            if number == SNITCH and self._parents:
-                left = self._believed(boxes)
-            for name in names:
-                thing = self._things[name]
-                before, rested = thing.box, thing.seen
-                index = thing.offer(left, strict, flicker)
-                if index is None:
-                    continue
-                if rested and not thing.moving:
-                    self._at_rest += 1
-                    self._changed += before != thing.box
-                if len(names) > 1:
-                    left = left[:index] + left[index + 1 :]
-                seen = seen or number == SNITCH
-        return seen
-
-    @property
-    def _offset(self) -> float:
-        """Px by which boxes lie too low in number: those of a detector that are cut to whole px."""
-        return _HALF_PX if self._is_noisy else 0.0
-
-    @property
-    def _is_noisy(self) -> bool:
-        """Whether boxes of what is at rest differ from frame to frame."""
-        return self._changed > _NOISY * self._at_rest
-
-    def _seen_box(self, name: str) -> Box | None:
-        """Give the box of a thing as well as it is known, px."""
-        thing = self._things[name]
-        if self._ideas.rest:
-            box = thing.mean
-            return None if box is None else moved(box, self._offset, self._offset)
-        return None if thing.box is None else _box(thing.box)
-
-    def _conclude(self, frame: int, seen: bool) -> None:
-        path = self._paths.get(self._snitch)
-        if seen:
-            self._bond = None
-            self._box = self._seen_box(self._snitch)
-            if path is not None and self._box is not None:
-                self._follow(path, frame, self._box)
-            return
-        if self._box is None:
-            return
-        root = self._root_of_snitch()
-        if root is not None:
-            self._carry(root, frame)
-            return
+    def _see(self, frame: int) -> None:
         self._bond = None
-        if path is not None and self._view is not None:
-            place = path.place(frame)
-            if place is not None:
-                self._box = self._put(place, self._trim, LIFT * path.height(frame))
-
-    def _follow(self, path: Path, frame: int, box: Box) -> None:
-        """Take in where the snitch is seen on its way."""
-        if self._view is None:
+        self._belonging.forget(*self._belonging.inferred)
+        self._box = self._scenery.box_of(self._snitch)
+        path, view = self._paths.get(self._snitch), self._scenery.view
+        if path is None or view is None or self._box is None:
             return
         lift = LIFT * path.height(frame)
-        guess = path.place(frame) or path.origin
-        plain = untrimmed(self._view, guess, self._trim, box, lift)
-        place = self._view.place(SNITCH_SOLID, plain, lift)
+        plain = untrimmed(view, path.place(frame) or path.origin, self._trim, self._box, lift)
+        place = view.place(SNITCH_SOLID, plain, lift)
         if place is not None:
             path.add(frame, place)
 
-    def _root_of_snitch(self) -> str | None:
-        root = self._parents.get(self._snitch)
-        while root is not None and root in self._parents:
-            root = self._parents[root]
-        return root if root in self._things else None
+    # What is inferred
 
-    def _carry(self, root: str, frame: int) -> None:
-        if self._bond is None or self._bond.root != root:
-            self._bind(root)
-        bond, thing = self._bond, self._things[root]
-        path = self._paths.get(root)
-        if bond is None or not (thing.moving or thing.roaming or path is not None):
+    def _infer(self, box: Box) -> None:
+        """Find out from what stands where that the hidden snitch is in a cone, or no longer is."""
+        outermost = self._belonging.outermost(self._snitch)
+        if self._uncovered(outermost) or self._snitch in self._paths:
             return
-        seen = thing.missed == 0
-        box = self._seen_box(root) if seen else None
-        if not self._ideas.ground or bond.place is None or self._view is None:
+        thing = self._scenery.things.get(outermost)
+        if thing is None or not thing.missed:
+            return
+        cones = [
+            (name, solid, seen)
+            for name, solid in self._scenery.solids.items()
+            if solid.is_cone
+            and name not in self._belonging.parents
+            and self._scenery.things[name].is_settled
+            and (seen := self._scenery.box_of(name)) is not None
+            and _around(seen, box)
+        ]
+        view = self._scenery.camera() if cones else None
+        place = None if view is None else view.place(SNITCH_SOLID, box)
+        if view is None or place is None:
+            return
+        radius = self._scenery.solids.get(outermost, SNITCH_SOLID).radius
+        container = container_at(view, place, radius, cones)
+        if container is not None:
+            self._belonging.infer(outermost, container)
+
+    def _uncovered(self, outermost: str) -> bool:
+        """Tell whether a cone is seen again that was believed to stand in another one."""
+        things, bond = self._scenery.things, self._bond
+        for child in self._belonging.inferred:
+            if child != self._snitch and child in things and not things[child].missed:
+                if bond is not None and bond.root == outermost and things[outermost].roaming:
+                    # What is seen again has been uncovered, and stands where it stood.
+                    self._box = bond.rested
+                self._belonging.forget(child)
+                return True
+        return False
+
+    # What follows for the hidden snitch
+
+    def _reason(self, frame: int) -> None:
+        root = self._root_of_snitch()
+        if root is not None:
+            bond = self._bond_with(root)
+            if bond is not None:
+                self._carry(bond, self._scenery.things[root], frame)
+            return
+        self._bond = None
+        path = self._paths.get(self._snitch)
+        place = None if path is None else path.place(frame)
+        if path is not None and place is not None:
+            self._put(place, self._trim, LIFT * path.height(frame))
+
+    def _root_of_snitch(self) -> str | None:
+        root = self._belonging.outermost(self._snitch)
+        return root if root != self._snitch and root in self._scenery.things else None
+
+    def _carry(self, bond: Bond, thing: Thing, frame: int) -> None:
+        path = self._paths.get(bond.root)
+        if not (thing.moving or thing.roaming or path is not None):
+            if self._box is not None:
+                bond.rested = self._box
+            return
+        box = None if thing.missed else self._scenery.box_of(bond.root)
+        if bond.place is None:
             if box is not None:
                 (u, v), (u0, v0) = centre_of(box), centre_of(bond.since)
                 self._box = moved(bond.child, u - u0, v - v0)
             return
-        # A cone that leaves the floor has been lifted off what it covered.
-        place = None if box is None else on_floor(self._view, self._solids[root], box)
+        place = None if box is None else self._on_floor(bond.root, box)
+        if box is not None and place is None and thing.roaming:
+            # Nobody said so, but it leaves the floor, and what it covered stays behind.
+            self._box = bond.rested
+            self._belonging.deny(bond.root)
+            return
         if path is not None:
             if place is not None:
                 path.add(frame, place)
+                self._trim_anew(bond, path.origin)
             place = path.place(frame) or place
         if place is not None:
             bond.place = place
-            self._box = self._put(place, bond.trim)
+            self._put(place, bond.trim)
 
-    def _put(self, place: Place, trim: Trim, lift: float = 0.0) -> Box | None:
-        assert self._view is not None
-        try:
-            return trimmed(self._view, place, trim, lift)
-        except ValueError:
-            return self._box
+    def _trim_anew(self, bond: Bond, origin: Place) -> None:
+        """Compare the child's box once more, now that it is better known where it stood."""
+        if self._scenery.view is not None and bond.rested == bond.child:
+            bond.trim = trim_of(self._scenery.view, origin, bond.child, _TRIM_SHARE)
 
-    def _bind(self, root: str) -> None:
-        """Note how the snitch stands in a container that has just been set over it."""
+    def _on_floor(self, name: str, box: Box) -> Place | None:
+        view, solid = self._scenery.view, self._scenery.solids.get(name)
+        if view is None or solid is None:
+            return None
+        fits = FITS_PX if self._scenery.is_noisy else _FITS_STEADY_PX
+        bond = self._bond
+        # How badly it fitted at rest is the calibration's fault, and says nothing of lifting.
+        excuse = 0.0 if bond is None else misfit(view, solid, bond.since) or 0.0
+        return on_floor(view, solid, box, fits + excuse)
+
+    def _put(self, place: Place, trim: Trim, lift: float = 0.0) -> None:
+        if self._scenery.view is None:
+            return
+        box = trimmed(self._scenery.view, place, trim, lift)
+        if box is not None:
+            self._box = box
+
+    def _bond_with(self, root: str) -> Bond | None:
+        """Give how the snitch stands in its container, noted when it is first asked for."""
+        if self._bond is not None and self._bond.root == root:
+            return self._bond
         if self._box is None:
-            return
-        self._tell_twins_apart(root)
-        box = self._seen_box(root)
+            return None
+        self._scenery.tell_apart(root, self._box)
+        box = self._scenery.box_of(root)
         if box is None:
-            return
-        place: Place | None = None
-        trim = NO_TRIM
-        view = self._camera() if self._ideas.ground else None
-        if view is not None and root in self._solids:
-            place = view.place(self._solids[root], box)
-            if place is not None:
-                try:
-                    trim = trim_of(view, place, self._box, _TRIM_SHARE)
-                except ValueError:
-                    place = None
-        self._bond = Bond(root, place, trim, box, self._box)
+            return None
+        place, trim = None, NO_TRIM
+        if self._ideas.ground:
+            place, trim = self._stand_in(root, box, self._box)
+        self._bond = Bond(root, place, trim, box, self._box, self._box)
+        return self._bond
 
-    def _tell_twins_apart(self, root: str) -> None:
-        """Of several alike the one that is nearest to the snitch has been set over it."""
-        alike = self._of_class[self._things[root].number]
-        if len(alike) == 1 or self._box is None:
-            return
-        u, v = centre_of(self._box)
-
-        def far(name: str) -> float:
-            box = self._things[name].box
-            if box is None:
-                return math.inf
-            return math.hypot((box[0] + box[2]) / 2 - u, (box[1] + box[3]) / 2 - v)
-
-        nearest = min(alike, key=far)
-        things = self._things
-        things[root], things[nearest] = things[nearest], things[root]
-
-    def _sample(self, name: str) -> None:
-        """Keep the box of what has been at rest, for the calibration."""
-        thing = self._things[name]
-        solid = self._solids.get(name)
-        if solid is None or not thing.seen or name in self._parents:
-            return
-        box = self._seen_box(name)
-        if box is not None and len(self._samples) < _MOST_SAMPLES:
-            self._samples.append((solid, box))
-
-    def _camera(self) -> GroundView | None:
-        """Give the camera, found anew where more has been seen since."""
-        now = [
-            (solid, box)
-            for name, solid in self._solids.items()
-            if self._things[name].seen
-            and name not in self._parents
-            and (box := self._seen_box(name)) is not None
-        ]
-        seen = [*self._samples, *now]
-        if self._view is None or len(self._samples) > self._sampled:
-            self._sampled = len(self._samples)
-            self._view = calibrated(self._view or START_VIEW, seen) or self._view
-        return self._view
+    def _stand_in(self, root: str, box: Box, child: Box) -> tuple[Place | None, Trim]:
+        """Give where a container and its child stand, and the trim of the child's box."""
+        view, solid = self._scenery.camera(), self._scenery.solids.get(root)
+        if view is None or solid is None:
+            return None, NO_TRIM
+        own = view.place(SNITCH_SOLID, child)
+        # What has long been hidden itself may be anywhere; then the child's own box tells.
+        stale = self._scenery.things[root].missed >= _LONG_UNSEEN
+        place = own if stale else view.place(solid, box)
+        if place is None:
+            return None, NO_TRIM
+        if own is not None and math.dist(place, own) > REACH:
+            # The report comes late: the container has gone on, and the child with it.
+            self._put(place, NO_TRIM)
+            return place, NO_TRIM
+        return place, trim_of(view, place, child, _TRIM_SHARE)
 
 
 def rounded(box: Box) -> Box:
-    """Round a box as labels are: the corner, and by themselves the width and the height."""
+    """Round a box as labels are: the corner, and by themselves the width and the height.
+
+    Example:
+        >>> rounded((0.4, 0.6, 10.8, 10.8))
+        (0, 1, 10, 11)
+    """
     x, y = round(box[0]), round(box[1])
     return x, y, x + round(box[2] - box[0]), y + round(box[3] - box[1])
 
@@ -400,8 +320,3 @@ def _around(outer: Box, inner: Box) -> bool:
     """Tell whether the middle of a box lies within another."""
     u, v = centre_of(inner)
     return outer[0] <= u <= outer[2] and outer[1] <= v <= outer[3]
-
-
-def _box(values: Sequence[float]) -> Box:
-    x1, y1, x2, y2 = values
-    return x1, y1, x2, y2
