@@ -8,7 +8,7 @@ BIN := $(VENV)/bin
 PACKAGES := icarus_lite aapa runtime
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt
 
-.PHONY: demo demo-without test check lint types imports format picture bench-task bench-language fuzz mistakes reference vscode fuzz-engine bench-engine clean help
+.PHONY: demo demo-without test check lint types imports format picture bench-task bench-language fuzz mistakes parentheses reference vscode colours fuzz-engine bench-engine bench-engine-rules bench-generator bench-tracking bench-aapa clean help
 
 help: ## list the targets
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/'
@@ -55,6 +55,14 @@ format: $(VENV)/.installed-dev ## lay the code out
 vscode: $(VENV)/.installed ## package the extension for VS Code (needs npm)
 	$(BIN)/python -m icarus_lite.language.textmate editors/vscode/syntaxes/icarus.tmLanguage.json
 	cd editors/vscode && npm install --no-fund --no-audit && npm test && npm run package
+	$(BIN)/python editors/engines.py domains/*.icr
+	$(BIN)/python editors/check_package.py editors/vscode/icarus-lite.vsix
+
+colours: $(VENV)/.installed ## compare the colours of VS Code's engine with the lexer's (after `make vscode`)
+	$(BIN)/python editors/engines.py domains/*.icr
+
+parentheses: $(VENV)/.installed ## forget and double each parenthesis of the domains (three minutes)
+	$(BIN)/python benchmarks/parentheses.py --out docs/results/parentheses.md
 
 picture: $(VENV)/.installed ## draw the picture of the README (needs EGL or OSMesa)
 	$(BIN)/python examples/02_picture_of_the_cell.py docs/images/cell.png
@@ -65,7 +73,7 @@ bench-task: $(VENV)/.installed ## task 1.1 on twenty seeds, with and without att
 bench-language: $(VENV)/.installed ## how long reading and checking a domain takes
 	$(BIN)/python benchmarks/language_speed.py --out docs/results/language.md
 
-fuzz: $(VENV)/.installed ## read 100,000 wrong domain files (five minutes)
+fuzz: $(VENV)/.installed ## read 100,000 wrong domain files (about twenty minutes)
 	$(BIN)/python benchmarks/fuzz_language.py --inputs 100000 --seed 1 --out docs/results/fuzz.md
 
 mistakes: $(VENV)/.installed ## typical mistakes, and word for word what is said of them
@@ -74,11 +82,32 @@ mistakes: $(VENV)/.installed ## typical mistakes, and word for word what is said
 reference: $(VENV)/.installed ## put the code's tables into the language reference
 	$(BIN)/python -m icarus_lite.language.reference docs/reference/language.md
 
-fuzz-engine: $(VENV)/.installed-dev ## beliefs against clingo's on 10,000 random programs (a minute)
-	ICARUS_FUZZ_PROGRAMS=10000 $(BIN)/python -m pytest -q -n 2 tests/differential
+fuzz-engine: $(VENV)/.installed-dev ## beliefs against clingo's on 10,000 random domains, 20 cycles each
+	ICARUS_ALL_CASES=1 $(BIN)/python -m pytest -q tests/datalog -k large
+	$(BIN)/python tests/differential/fuzz.py --programs 10000 --cycles 20 --out docs/results/fuzz-engine.md
 
-bench-engine: $(VENV)/.installed ## how inference from scratch grows with the scene
-	$(BIN)/python benchmarks/engine_scaling.py
+bench-engine: $(VENV)/.installed-dev ## inference beside CLIPS and clingo, in one run (half an hour)
+	$(BIN)/python benchmarks/engine_peers.py --out docs/results/engine.md
+
+bench-engine-rules: $(VENV)/.installed-dev ## how inference grows with the number of rules
+	$(BIN)/python benchmarks/engine_rules.py --out docs/results/engine-rules.md
+
+bench-generator: $(VENV)/.installed ## the generated data beside what is published of LA-CATER (five minutes)
+	$(BIN)/python benchmarks/generator_calibration.py --out docs/results/generator.md
+
+# norfair asks for older versions of numpy and rich than it runs with: an environment of its own.
+.venv-peers/.installed: pyproject.toml | $(BIN)/python
+	$(BIN)/python -m venv .venv-peers
+	.venv-peers/bin/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e . trackers==2.6.1 filterpy==1.4.5
+	.venv-peers/bin/python -m pip install --quiet --disable-pip-version-check --no-deps norfair==2.3.0
+	@touch $@
+
+bench-tracking: $(VENV)/.installed .venv-peers/.installed ## AAPA beside norfair, SORT and ByteTrack in one run, and alignment at scale
+	$(BIN)/icarus cater generate --videos 40 --seed 100 --out build/tracking
+	.venv-peers/bin/python -W ignore benchmarks/tracking.py build/tracking --out docs/results/tracking.md
+
+bench-aapa: $(VENV)/.installed ## AAPA and aapa-plus beside the paper's table, and each idea left out (half an hour)
+	$(BIN)/python benchmarks/aapa_table.py --out docs/results/aapa.md
 
 clean: ## remove the virtual environment and what tools left behind
-	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache .hypothesis build dist
+	rm -rf $(VENV) .venv-peers .mypy_cache .ruff_cache .pytest_cache .hypothesis build dist

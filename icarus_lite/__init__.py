@@ -12,9 +12,11 @@ from typing import TYPE_CHECKING
 from icarus_lite._version import __version__
 
 if TYPE_CHECKING:
-    from icarus_lite.agent import Agent, Decision, DecisionKind, GoalStatus
+    from icarus_lite.agent import Agent, Decision, DecisionKind, GoalStatus, IntentionStatus
     from icarus_lite.errors import FrameError, IcarusError, InferenceError, TraceError
+    from icarus_lite.execution import SkillPath
     from icarus_lite.language import DomainError, load_domain
+    from icarus_lite.planning import Failure, FailureReason
     from icarus_lite.symbols import Action, Belief, Outcome, Percept, Status, Value
 
 _HOMES = {
@@ -24,12 +26,16 @@ _HOMES = {
     "Decision": "agent",
     "DecisionKind": "agent",
     "DomainError": "language",
+    "Failure": "planning",
+    "FailureReason": "planning",
     "FrameError": "errors",
     "GoalStatus": "agent",
     "IcarusError": "errors",
     "InferenceError": "errors",
+    "IntentionStatus": "agent",
     "Outcome": "symbols",
     "Percept": "symbols",
+    "SkillPath": "execution",
     "Status": "symbols",
     "TraceError": "errors",
     "Value": "symbols",
@@ -43,12 +49,16 @@ __all__ = [
     "Decision",
     "DecisionKind",
     "DomainError",
+    "Failure",
+    "FailureReason",
     "FrameError",
     "GoalStatus",
     "IcarusError",
     "InferenceError",
+    "IntentionStatus",
     "Outcome",
     "Percept",
+    "SkillPath",
     "Status",
     "TraceError",
     "Value",

@@ -3,112 +3,63 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
-from enum import StrEnum
 
 from icarus_lite.errors import FrameError
+from icarus_lite.execution import (
+    MAX_ATTEMPTS,
+    Decision,
+    DecisionKind,
+    Executor,
+    GoalStatus,
+    IntentionStatus,
+    Moment,
+)
 from icarus_lite.inference import (
     BeliefState,
     Change,
+    Chronicle,
+    Context,
     Explanation,
     Functions,
     InferenceEngine,
+    WhyNot,
     explain,
     given_memory,
+    why_not,
 )
-from icarus_lite.language.fragments import parse_conditions
+from icarus_lite.language.fragments import parse_atom, parse_conditions
+from icarus_lite.language.reading.explanations import closest
 from icarus_lite.language.syntax import Atom, Condition, Constant, Domain
-from icarus_lite.planning import (
-    Candidate,
-    Imagination,
-    NoPlan,
-    PlanStep,
-    candidates,
-    find_plan,
-    holds,
-)
-from icarus_lite.symbols import Action, Belief, Outcome, Percept, Status
+from icarus_lite.symbols import Belief, Outcome, Percept
 
-MAX_ATTEMPTS = 3
-"""How often one action may fail before the planner does without it."""
-
-
-class DecisionKind(StrEnum):
-    """What the agent has decided in a cycle."""
-
-    ACT = "act"  # start the action
-    CONTINUE = "continue"  # let the running action go on
-    ABORT = "abort"  # stop the running action: what it relied on is no longer believed
-    ACHIEVED = "achieved"  # all goals are believed
-    IMPASSE = "impasse"  # nothing leads to the goals; the reason says why
-
-
-@dataclass(frozen=True, slots=True)
-class GoalStatus:
-    """A goal and whether it is believed now."""
-
-    goal: Condition
-    satisfied: bool
-
-
-@dataclass(frozen=True, slots=True)
-class Decision:
-    """What one cycle came to.
-
-    Args:
-        cycle: The cycle's number, from 0.
-        kind: What to do.
-        state: All beliefs of the cycle with their supports.
-        added: Beliefs that were not held in the cycle before.
-        removed: Beliefs that are no longer held.
-        goals: Each goal and whether it is believed.
-        path: The steps from here to the goals, the present one first.
-        step: The step to start, continue or abort; None when there is none.
-        reason: Why, in words.
-        candidates: Where a plan was looked for, the skills that were considered for its first
-            step, and why the others were not chosen.
-    """
-
-    cycle: int
-    kind: DecisionKind
-    state: BeliefState
-    added: tuple[Belief, ...]
-    removed: tuple[Belief, ...]
-    goals: tuple[GoalStatus, ...]
-    path: tuple[PlanStep, ...]
-    step: PlanStep | None
-    reason: str
-    candidates: tuple[Candidate, ...] = ()
-
-    @property
-    def beliefs(self) -> tuple[Belief, ...]:
-        """All beliefs of this cycle, sorted."""
-        return self.state.beliefs
-
-    @property
-    def action(self) -> Action | None:
-        """The action to start or to let run; None when there is nothing to do or it must stop."""
-        going = self.kind in (DecisionKind.ACT, DecisionKind.CONTINUE)
-        return self.step.action if going and self.step is not None else None
-
-    @property
-    def commands(self) -> tuple[Action, ...]:
-        """The driver's commands for the action."""
-        return self.step.commands if self.action is not None and self.step is not None else ()
+__all__ = [
+    "MAX_ATTEMPTS",
+    "Agent",
+    "Decision",
+    "DecisionKind",
+    "GoalStatus",
+    "IntentionStatus",
+]
 
 
 class Agent:
     """Infers, watches its goals and chooses the next skill, once per cycle.
 
+    It is told what to achieve (`goals`, states of the world), what to do (`intentions`, skills to
+    be carried out), or both: then the intentions come first.
+
     Args:
         domain: A checked domain.
         goals: Literals as text or syntax, all to be achieved: `["(attached hubcover case)"]`.
+        intentions: Skills as text or syntax, to be carried out one after the other, each to its
+            end: `["(make-clear a)"]`. An argument may be a variable; the skill binds it.
         functions: Python predicates that `:tests` may call by name. They must be pure.
         given: Facts that are believed from the start, as in a task's `:init`. Percepts among
             them are left out: perception reports those itself.
 
     Raises:
-        DomainError: a goal given as text does not parse.
+        DomainError: a goal or an intention given as text does not parse.
+        FrameError: the domain has no skill of that name and number of arguments.
 
     Example:
         >>> from icarus_lite.language import parse_domain
@@ -124,6 +75,7 @@ class Agent:
         domain: Domain,
         goals: Iterable[str | Condition] = (),
         *,
+        intentions: Iterable[str | Atom] = (),
         functions: Functions | None = None,
         given: Iterable[Atom] = (),
     ) -> None:
@@ -133,12 +85,11 @@ class Agent:
             for goal in goals
             for condition in (parse_conditions(goal) if isinstance(goal, str) else (goal,))
         )
+        self.intentions: tuple[Atom, ...] = tuple(_as_call(each, domain) for each in intentions)
         self._engine = InferenceEngine(domain, functions)
         self._memory = given_memory(domain, given)
-        self._path: tuple[PlanStep, ...] = ()
-        self._running: PlanStep | None = None
-        self._failures: dict[Action, list[str]] = {}
-        self._candidates: tuple[Candidate, ...] = ()
+        self._executor = Executor(domain, self._engine.evaluator, self.goals, self.intentions)
+        self._chronicle = Chronicle()
 
     @property
     def state(self) -> BeliefState:
@@ -149,13 +100,19 @@ class Agent:
         self,
         percepts: Iterable[Percept],
         last_outcome: Outcome | Sequence[Outcome] | None = None,
+        *,
+        time_s: float | None = None,
     ) -> Decision:
         """Run one recognise-act cycle.
 
         Args:
             percepts: Everything perceived now, anchored objects that are hidden included.
             last_outcome: What became of the action decided on before (and of other agents'
-                actions, in order); None if nothing is known of any.
+                actions, in order); None if nothing is known of any. Of a body that reports
+                nothing, beliefs tell when an action has had its effects; those of its effects
+                that no percept shows are then never believed.
+            time_s: The time in s on any clock, if `:timeout` is to be watched here; None where
+                the body sees to it.
 
         Raises:
             FrameError: a percept is malformed.
@@ -167,99 +124,83 @@ class Agent:
             self._memory, percepts, outcomes, self._planned_changes(outcomes)
         )
         state = self._memory.state
-        self._take_note(outcomes)
-        self._candidates = ()
-        kind, reason = self._decide(outcomes)
-        if kind is DecisionKind.ACT:
-            self._running = self._path[0]
+        added, removed = state.since(before)
+        present = [percept.name for percept in state.percepts]
+        self._chronicle.record(state.cycle, added, removed, outcomes, present)
+        moment = Moment(self._engine, self._memory, time_s)
+        choice = self._executor.decide(moment, outcomes)
+        done = self._executor.carried_out
         return Decision(
             state.cycle,
-            kind,
+            choice.kind,
             state,
-            tuple(b for b in state.beliefs if b not in before),
-            tuple(b for b in before.beliefs if b not in state),
-            tuple(GoalStatus(goal, holds([goal], state.facts())) for goal in self.goals),
-            self._path,
-            self._running,
-            reason,
-            self._candidates,
+            added,
+            removed,
+            tuple(GoalStatus(goal, moment.believes([goal])) for goal in self.goals),
+            choice.plan,
+            choice.step,
+            choice.reason,
+            choice.candidates,
+            choice.skill_path,
+            tuple(IntentionStatus(call, i < done) for i, call in enumerate(self.intentions)),
+            choice.failures,
         )
 
-    def why(self, belief: str | Belief) -> Explanation:
+    def why(self, belief: str | Belief, *, alternatives: bool = False) -> Explanation:
         """Explain why a belief is held now, down to percepts and actions.
+
+        Args:
+            belief: The belief.
+            alternatives: Whether to give all other reasons for it as well.
 
         Raises:
             FrameError: the text is not one belief without variables.
         """
-        return explain(_as_belief(belief), self.state)
+        return explain(
+            _as_belief(belief), self.state, alternatives=alternatives, chronicle=self._chronicle
+        )
+
+    def why_not(self, asked: str | Belief) -> WhyNot:
+        """Say why a belief is not held now, or why a skill cannot start.
+
+        Args:
+            asked: A belief such as `(near ?x case)` or a skill such as `(pick-up hand1 plug)`;
+                variables stand for anything.
+
+        Raises:
+            DomainError: the text does not parse.
+            FrameError: the text is not one literal.
+        """
+        context = Context(
+            self.domain, self.state, self._engine.evaluator, self._chronicle, self._memory.known
+        )
+        return why_not(asked, context)
 
     def _planned_changes(self, outcomes: Sequence[Outcome]) -> dict[int, Change]:
         """Give the exact effects of our own action, whose clause and bindings we know."""
-        running = self._running
+        running = self._executor.running
         if running is None:
             return {}
         return {i: running.change for i, o in enumerate(outcomes) if o.action == running.action}
-
-    def _take_note(self, outcomes: Sequence[Outcome]) -> None:
-        for outcome in outcomes:
-            ours = self._running is not None and outcome.action == self._running.action
-            if not ours or outcome.status is Status.RUNNING:
-                continue
-            self._running = None
-            if outcome.status is Status.FAILED:
-                self._failures.setdefault(outcome.action, []).append(outcome.reason)
-                self._path = ()
-            else:
-                self._path = self._path[1:]
-
-    def _decide(self, outcomes: Sequence[Outcome]) -> tuple[DecisionKind, str]:
-        facts = self.state.facts()
-        if self._running is not None:
-            broken = self._broken(self._running)
-            if broken:
-                return DecisionKind.ABORT, broken
-            return DecisionKind.CONTINUE, f"{self._running.action} is running"
-        if holds(self.goals, facts, evaluator=self._engine.evaluator):
-            self._path = ()
-            return DecisionKind.ACHIEVED, "all goals are believed"
-        imagination = Imagination(
-            self.domain, self._memory, self._engine.closure, self._engine.evaluator
-        )
-        if self._path:
-            again = imagination.instances(self._path[0].clause, facts, dict(self._path[0].bindings))
-            if any(True for _ in again):
-                return DecisionKind.ACT, f"next step of the plan, {len(self._path)} to go"
-        excluded = [a for a, reasons in self._failures.items() if len(reasons) >= MAX_ATTEMPTS]
-        found = find_plan(self.domain, imagination, self.goals, excluded=excluded)
-        self._candidates = tuple(candidates(self.domain, imagination, self.goals, found))
-        if isinstance(found, NoPlan):
-            self._path = ()
-            given_up = [
-                f"{a} failed {MAX_ATTEMPTS} times: {self._failures[a][-1]}" for a in excluded
-            ]
-            return DecisionKind.IMPASSE, "; ".join([found.reason, *given_up])
-        self._path = found.steps
-        failed = [o.reason for o in outcomes if o.status is Status.FAILED and o.reason]
-        after = f" after a failure ({failed[-1]})" if failed else ""
-        return DecisionKind.ACT, f"first of {len(found.steps)} steps to the goal{after}"
-
-    def _broken(self, step: PlanStep) -> str:
-        """Say what a running step relied on and is no longer believed; empty if nothing."""
-        known, present = self._memory.known, {p.name for p in self.state.percepts}
-        for argument in step.action.args:
-            if argument in known and argument not in present:
-                return f"{argument} is no longer anchored while {step.action} is running"
-        facts, bindings = self.state.facts(), dict(step.bindings)
-        for condition in step.clause.holds:
-            if not holds([condition], facts, bindings, self._engine.evaluator):
-                return f"{condition} no longer holds while {step.action} is running"
-        return ""
 
 
 def _as_outcomes(given: Outcome | Sequence[Outcome] | None) -> tuple[Outcome, ...]:
     if given is None:
         return ()
     return (given,) if isinstance(given, Outcome) else tuple(given)
+
+
+def _as_call(given: str | Atom, domain: Domain) -> Atom:
+    """Read a skill call, and see that the domain has such a skill."""
+    call = parse_atom(given, "<intention>") if isinstance(given, str) else given
+    named = [clause.head for clause in domain.skills if clause.head.predicate == call.predicate]
+    if not named:
+        meant = closest(call.predicate, [clause.head.predicate for clause in domain.skills])
+        hint = f"; did you mean `{meant}`?" if meant else ""
+        raise FrameError(f"the domain has no skill called `{call.predicate}`{hint}")
+    if all(len(head.args) != len(call.args) for head in named):
+        raise FrameError(f"{call} has {len(call.args)} arguments; the skill is {named[0]}")
+    return call
 
 
 def _as_belief(text: str | Belief) -> Belief:

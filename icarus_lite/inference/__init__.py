@@ -4,8 +4,18 @@ from icarus_lite.inference.attachment import ATTACHED, Hierarchy, Link, advance
 from icarus_lite.inference.closure import Closure
 from icarus_lite.inference.effects import Change, change_of
 from icarus_lite.inference.engine import BeliefState, InferenceEngine, Memory
+from icarus_lite.inference.explaining import Chronicle, Context, WhyNot, why_not
 from icarus_lite.inference.explanation import Explanation, explain
-from icarus_lite.inference.facts import FactStore, ground, match, percept_fact, percept_facts, unify
+from icarus_lite.inference.facts import (
+    Bindings,
+    FactStore,
+    ground,
+    match,
+    percept_fact,
+    percept_facts,
+    resolve,
+    unify,
+)
 from icarus_lite.inference.given import GIVEN, given_memory, given_percepts
 from icarus_lite.inference.matching import Evaluator, Functions, Match, Matcher
 from icarus_lite.inference.near_miss import (
@@ -15,15 +25,18 @@ from icarus_lite.inference.near_miss import (
     near_misses,
     nearest_beliefs,
 )
-from icarus_lite.inference.supports import Assertion, Derivation, Support
+from icarus_lite.inference.supports import Assertion, Derivation, Support, bind_pattern
 
 __all__ = [
     "ATTACHED",
     "GIVEN",
     "Assertion",
     "BeliefState",
+    "Bindings",
     "Change",
+    "Chronicle",
     "Closure",
+    "Context",
     "Derivation",
     "Evaluator",
     "Explanation",
@@ -38,7 +51,9 @@ __all__ = [
     "NearMiss",
     "Obstacle",
     "Support",
+    "WhyNot",
     "advance",
+    "bind_pattern",
     "change_of",
     "explain",
     "first_obstacle",
@@ -50,5 +65,7 @@ __all__ = [
     "nearest_beliefs",
     "percept_fact",
     "percept_facts",
+    "resolve",
     "unify",
+    "why_not",
 ]

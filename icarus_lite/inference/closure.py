@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from icarus_lite.inference.canonical import canonical
 from icarus_lite.inference.facts import FactStore
 from icarus_lite.inference.matching import Evaluator
 from icarus_lite.inference.rules import Rule
@@ -33,6 +34,10 @@ class Closure:
     The order of beliefs and of their derivations is that of asking all rules of a stratum again
     and again, in the order of the text, each over all facts: rules as written; of one rule, first
     what rests on the facts that were believed first, its first condition counting most.
+
+    Attributes are functional: what is given decides before any clause; then the round of asking
+    in which a belief first follows, in it the clause written first, and of that clause the
+    canonically least values. So they depend on the facts, not on the order these came in.
 
     Raises:
         InferenceError: the concepts negate through recursion.
@@ -86,9 +91,11 @@ class Closure:
                     since, asked[number] = asked[number], facts.count
                     # All of it before any is added: a rule does not see what it just concluded.
                     follows = tuple(rule.all(facts) if first else rule.new(facts, since))
-                    for belief, derivation in follows:
-                        if belief in denied:
+                    decided = _least(belief for belief, _ in follows)
+                    for concluded, derivation in follows:
+                        if concluded in denied:
                             continue
+                        belief = decided.get(concluded, concluded)
                         supports = found.get(belief)
                         if supports is None:
                             found[belief] = [derivation]
@@ -97,3 +104,20 @@ class Closure:
                         fresh |= facts.add(belief)
                 first = False
         return {belief: tuple(supports) for belief, supports in found.items()}
+
+
+def _least(beliefs: Iterable[Belief]) -> dict[Belief, Belief]:
+    """Give, of beliefs concluded by one clause that differ in attributes, the least of each."""
+    least: dict[Belief, Belief] = {}
+    for belief in beliefs:
+        if belief.attributes:
+            known = least.setdefault(belief, belief)
+            if known is not belief and _attributes(belief) < _attributes(known):
+                del least[belief]
+                least[belief] = belief
+    return least
+
+
+def _attributes(belief: Belief) -> tuple[tuple[object, ...], ...]:
+    """Give what beliefs of one clause are ordered by: the attributes as its head writes them."""
+    return canonical(belief.attributes.values())

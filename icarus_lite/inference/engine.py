@@ -8,14 +8,23 @@ from dataclasses import dataclass, field
 
 from icarus_lite.errors import FrameError
 from icarus_lite.inference.attachment import ATTACHED, Hierarchy, advance
+from icarus_lite.inference.belief_supports import BeliefSupports, LazyFacts
 from icarus_lite.inference.closure import Closure
 from icarus_lite.inference.effects import Change, change_by_action
-from icarus_lite.inference.facts import FactStore, Lineages, percept_facts
+from icarus_lite.inference.facts import (
+    FactStore,
+    Lineages,
+    check_arguments,
+    check_values,
+    percept_facts,
+)
 from icarus_lite.inference.matching import Evaluator, Functions
+from icarus_lite.inference.network import Network, compile_domain
 from icarus_lite.inference.supports import Assertion, Support
+from icarus_lite.language.checking.stratification import strata
 from icarus_lite.language.percept_types import lineages
 from icarus_lite.language.syntax import Domain
-from icarus_lite.symbols import Belief, Outcome, Percept, Status, is_number
+from icarus_lite.symbols import Belief, Outcome, Percept, Status
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,8 +55,20 @@ class BeliefState:
         """All beliefs, percepts left out, sorted as they are written."""
         return tuple(sorted(self.supports, key=str))
 
+    def since(self, before: BeliefState) -> tuple[tuple[Belief, ...], tuple[Belief, ...]]:
+        """Give the beliefs added and removed since another cycle, each sorted as written."""
+        mine, theirs = self.supports, before.supports
+        if isinstance(mine, BeliefSupports) and isinstance(theirs, BeliefSupports):
+            changes = mine.changes_since(theirs)
+            if changes is not None:
+                return changes.added, changes.removed
+        added = tuple(belief for belief in self.beliefs if belief not in before)
+        return added, tuple(belief for belief in before.beliefs if belief not in self)
+
     def facts(self) -> FactStore:
         """Give percepts and beliefs together, to match patterns against."""
+        if isinstance(self.supports, BeliefSupports):
+            return LazyFacts(self.percepts, self.lineages, self.supports)
         store = FactStore(percept_facts(self.percepts, self.lineages))
         for belief in self.supports:
             store.add(belief)
@@ -77,20 +98,24 @@ class InferenceEngine:
     decides, each cycle, whether it holds. `attached` follows Algorithm 1. An action that failed
     or still runs asserts nothing.
 
-    The engine itself holds no state: `step` takes a memory and gives the next one.
+    What is believed lies in the memory that `step` takes and gives. The engine keeps a network
+    that stands where the last step ended, so that the next one costs what has changed; from
+    another memory it goes there first.
 
     Args:
         domain: A checked domain.
         functions: Python predicates that `:tests` may call by name. They must be pure.
     """
 
-    __slots__ = ("closure", "domain", "evaluator", "lineages")
+    __slots__ = ("_network", "_order", "closure", "domain", "evaluator", "lineages")
 
     def __init__(self, domain: Domain, functions: Functions | None = None) -> None:
         self.domain = domain
         self.lineages = lineages(domain.percepts)
         self.evaluator = Evaluator(functions or {}, domain.source.path)
         self.closure = Closure(domain.concepts, self.evaluator)
+        self._order = tuple(concept for layer in strata(domain.concepts) for concept in layer)
+        self._network: Network | None = None
 
     def step(
         self,
@@ -111,7 +136,7 @@ class InferenceEngine:
 
         Raises:
             FrameError: two percepts of one type, or of a type and its subtype, share a name, or an
-                attribute is not finite.
+                attribute or an argument of an action is not finite.
             InferenceError: a test of the domain cannot be evaluated.
         """
         seen = _checked(percepts, self.lineages)
@@ -120,15 +145,16 @@ class InferenceEngine:
         known = memory.known | present
         asserted, hierarchy = dict(memory.asserted), memory.state.hierarchy
         notes: list[str] = []
-        before: FactStore | None = memory.state.facts()
+        before: FactStore | None = memory.state.facts() if outcomes else None
         for number, outcome in enumerate(outcomes):
+            check_arguments(outcome.action)
             if outcome.status is not Status.SUCCEEDED:
                 continue
             change = (changes or {}).get(number)
             if change is None:
                 if before is None:  # what the outcomes so far have left, as far as was perceived
                     percepts_then = memory.state.percepts
-                    before = self._infer(cycle, percepts_then, asserted, hierarchy, ()).facts()
+                    before = self._imagine(percepts_then, asserted, hierarchy)
                 change = change_by_action(
                     self.domain.skills, outcome.action, before, self.evaluator
                 )
@@ -162,15 +188,39 @@ class InferenceEngine:
         hierarchy: Hierarchy,
         notes: tuple[str, ...],
     ) -> BeliefState:
-        given: dict[Belief, tuple[Support, ...]] = {b: (cause,) for b, cause in asserted.items()}
-        for belief, link in hierarchy.beliefs():
-            given[belief] = (Assertion(link.action, link.cycle),)
+        given = _given(asserted, hierarchy)
+        network = self._network
+        if network is None:
+            network = compile_domain(self.domain, self.evaluator.functions).network()
+        changes = network.update_snapshot(percepts, given)
+        self._network = network
+        supports = BeliefSupports(
+            network, self.closure, self._order, given, percepts, self.lineages, changes
+        )
+        return BeliefState(cycle, percepts, supports, hierarchy, notes, self.lineages)
+
+    def _imagine(
+        self,
+        percepts: tuple[Percept, ...],
+        asserted: Mapping[Belief, Assertion],
+        hierarchy: Hierarchy,
+    ) -> FactStore:
+        """Give all that would be believed, without saying that it is."""
         facts = FactStore(percept_facts(percepts, self.lineages))
-        for belief in given:
+        for belief in _given(asserted, hierarchy):
             facts.add(belief)
-        for belief, supports in self.closure.derive(facts).items():
-            given[belief] = given.get(belief, ()) + supports
-        return BeliefState(cycle, percepts, given, hierarchy, notes, self.lineages)
+        self.closure.derive(facts)
+        return facts
+
+
+def _given(
+    asserted: Mapping[Belief, Assertion], hierarchy: Hierarchy
+) -> dict[Belief, tuple[Support, ...]]:
+    """Give the beliefs that rest on actions, each with the one that asserted it."""
+    given: dict[Belief, tuple[Support, ...]] = {b: (cause,) for b, cause in asserted.items()}
+    for belief, link in hierarchy.beliefs():
+        given[belief] = (Assertion(link.action, link.cycle),)
+    return given
 
 
 def _checked(percepts: Iterable[Percept], lineages: Lineages) -> tuple[Percept, ...]:
@@ -180,9 +230,5 @@ def _checked(percepts: Iterable[Percept], lineages: Lineages) -> tuple[Percept, 
         if count > 1:
             raise FrameError(f"{count} percepts of type {kind} are named {name}; names are unique")
     for percept in seen:
-        for attribute, value in percept.attributes.items():
-            if not isinstance(value, str) and not is_number(value):
-                raise FrameError(
-                    f"attribute {attribute} of {percept.name} is {value!r}, not finite"
-                )
+        check_values(percept)
     return seen

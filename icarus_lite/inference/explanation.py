@@ -1,15 +1,25 @@
-"""`why`: the derivation of a belief as a tree, down to percepts and to actions."""
+"""`why`: the derivation of a belief as a tree, down to percepts and to actions.
+
+Nothing is kept for it from cycle to cycle: a proof follows the first support of each belief and is
+made when it is asked for. Should first supports ever lead in a circle, supports are chosen anew so
+that they do not. A belief that serves several
+times in a proof is explained once and shared, so that a proof is never larger than what it is
+about, however often its parts come up.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections import deque
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from icarus_lite.inference.engine import BeliefState
-from icarus_lite.inference.facts import percept_facts
-from icarus_lite.inference.given import GIVEN
-from icarus_lite.inference.supports import Assertion, Support
-from icarus_lite.symbols import Belief, Percept
+from icarus_lite.inference.explaining.chronicle import Chronicle, Period
+from icarus_lite.inference.explaining.grounds import well_founded
+from icarus_lite.inference.explaining.reasons import because
+from icarus_lite.inference.supports import Assertion, Derivation, Support
+from icarus_lite.language.syntax import Atom
+from icarus_lite.symbols import Action, Belief, Percept, Value
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,53 +27,214 @@ class Explanation:
     """One belief, why it is held, and the explanations of what that rests on.
 
     Args:
-        subject: The belief or percept, as text.
-        because: One sentence: perceived, asserted by which action when, or by which clause.
+        belief: The belief, or the percept as a fact.
+        cycle: The cycle it is about.
+        support: Its derivation, the action that asserted it, or the percept that it is; None if
+            it is not believed.
         premises: The explanations of the percepts and beliefs it was derived from.
-        absences: Patterns that nothing matches, which a `not` asked for.
+        alternatives: The same belief by its other supports, where they were asked for.
+        periods: When it was held, this cycle included, as far as that is on record.
     """
 
-    subject: str
-    because: str
+    belief: Belief
+    cycle: int
+    support: Support | Percept | None
     premises: tuple[Explanation, ...] = ()
-    absences: tuple[str, ...] = ()
+    alternatives: tuple[Explanation, ...] = ()
+    periods: tuple[Period, ...] = ()
+
+    @property
+    def subject(self) -> str:
+        """The belief or percept, as text."""
+        return str(self.support if isinstance(self.support, Percept) else self.belief)
+
+    @property
+    def because(self) -> str:
+        """One sentence: perceived, asserted by which action when, or by which clause."""
+        if self.support is None:
+            return f"is not believed in cycle {self.cycle}"
+        return because(None if isinstance(self.support, Percept) else self.support)
+
+    @property
+    def holds(self) -> bool:
+        """Whether it is believed."""
+        return self.support is not None
+
+    @property
+    def action(self) -> Action | None:
+        """The action that asserted it, if one did."""
+        return self.support.action if isinstance(self.support, Assertion) else None
+
+    @property
+    def absences(self) -> tuple[Atom, ...]:
+        """The patterns that nothing matches, which a `not` asked for."""
+        return self.support.absent if isinstance(self.support, Derivation) else ()
 
     def __str__(self) -> str:
-        return "\n".join(self._lines(""))
+        return "\n".join(self.lines())
 
-    def _lines(self, indent: str) -> Iterator[str]:
-        yield f"{indent}{self.subject}  {self.because}"
-        for premise in self.premises:
-            yield from premise._lines(indent + "  ")  # noqa: SLF001 - its own class
-        for absence in self.absences:
-            yield f"{indent}  (not {absence})  nothing like it is believed"
+    def as_document(self) -> dict[str, object]:
+        """Give it as plain data: all nodes of the proof, each once, the root first.
+
+        What rests on others names them by their places in the list.
+        """
+        numbers: dict[int, int] = {}
+        order: list[Explanation] = []
+        waiting = deque([self])
+        while waiting:
+            each = waiting.popleft()
+            if id(each) not in numbers:
+                numbers[id(each)] = len(order)
+                order.append(each)
+                waiting += (*each.premises, *each.alternatives)
+        nodes = [
+            {
+                "belief": each.subject,
+                "because": each.because,
+                "premises": [numbers[id(premise)] for premise in each.premises],
+                "absences": [str(absence) for absence in each.absences],
+                "alternatives": [numbers[id(other)] for other in each.alternatives],
+            }
+            for each in order
+        ]
+        periods = [[period.first, period.last] for period in self.periods]
+        return {"cycle": self.cycle, "periods": periods, "nodes": nodes}
+
+    def lines(self) -> Iterator[str]:
+        """Give its text, a line at a time; what was told before is not told again."""
+        told: set[int] = set()
+        waiting: list[tuple[str, Explanation | str]] = [("", self)]
+        while waiting:
+            indent, each = waiting.pop()
+            if isinstance(each, str):
+                yield f"{indent}{each}"
+                continue
+            again = bool(each.premises) and id(each) in told
+            yield f"{indent}{each.subject}  {each.because}{', as told above' if again else ''}"
+            if again:
+                continue
+            told.add(id(each))
+            below = indent + "  "
+            parts: list[tuple[str, Explanation | str]] = [(below, p) for p in each.premises]
+            parts += [
+                (below, f"(not {absence})  nothing like it is believed")
+                for absence in each.absences
+            ]
+            for other in each.alternatives:
+                parts += [(below, "or else:"), (below + "  ", other)]
+            if len(each.periods) > 1:
+                held = ", ".join(map(str, each.periods))
+                parts.append((below, f"it has been believed {held}"))
+            waiting += reversed(parts)
 
 
-def explain(belief: Belief, state: BeliefState) -> Explanation:
-    """Explain a belief of a cycle by its first support, which never rests on the belief itself."""
-    for percept in state.percepts:
-        if belief in percept_facts((percept,), state.lineages):
-            return _explain_percept(percept)
-    supports = state.supports.get(belief)
-    if not supports:
-        return Explanation(str(belief), f"is not believed in cycle {state.cycle}")
-    return _explain_support(belief, supports[0], state)
+def explain(
+    belief: Belief,
+    state: BeliefState,
+    *,
+    alternatives: bool = False,
+    chronicle: Chronicle | None = None,
+) -> Explanation:
+    """Explain a belief of a cycle.
+
+    Args:
+        belief: The belief, or a percept as a fact.
+        state: The beliefs of the cycle.
+        alternatives: Whether to give its other supports as well, all that can be established
+            without the belief itself. What they rest on can be asked about in turn.
+        chronicle: What was believed when, for the periods.
+    """
+    proof = _Proof(state)
+    found = proof.of(belief)
+    others: tuple[Explanation, ...] = ()
+    if alternatives and found.support is not None:
+        others = tuple(_others(belief, state, proof))
+    periods = () if chronicle is None else chronicle.periods(belief)
+    if not others and not periods:
+        return found
+    return Explanation(belief, state.cycle, found.support, found.premises, others, periods)
 
 
-def _explain_percept(percept: Percept) -> Explanation:
-    return Explanation(str(percept), "is perceived")
+def _others(belief: Belief, state: BeliefState, proof: _Proof) -> Iterator[Explanation]:
+    supports = [each for each in state.supports.get(belief, ()) if each != proof.support(belief)]
+    premises = [
+        premise
+        for support in supports
+        if isinstance(support, Derivation)
+        for premise in support.matched
+    ]
+    choices = well_founded(premises, state.supports, without=belief)
+    independent = _Proof(state, choices)
+    for support in supports:
+        if isinstance(support, Assertion):
+            yield Explanation(belief, state.cycle, support)
+        elif all(each in choices or proof.is_perceived(each) for each in support.matched):
+            below = tuple(independent.of(premise) for premise in support.matched)
+            yield Explanation(belief, state.cycle, support, below)
 
 
-def _explain_support(belief: Belief, support: Support, state: BeliefState) -> Explanation:
-    if isinstance(support, Assertion) and support.action == GIVEN:
-        return Explanation(str(belief), "is given from the start")
-    if isinstance(support, Assertion):
-        because = f"because {support.action} succeeded, reported in cycle {support.cycle}"
-        return Explanation(str(belief), because)
-    place = f" ({support.clause.span.in_line})" if support.clause.span.line else ""
-    return Explanation(
-        str(belief),
-        f"by its definition{place}",
-        tuple(explain(premise, state) for premise in support.matched),
-        tuple(str(atom) for atom in support.absent),
-    )
+class _Proof:
+    """The proofs of one cycle, each belief explained once.
+
+    Args:
+        state: The beliefs of the cycle.
+        choices: The support to follow for each belief; its first if left out.
+    """
+
+    def __init__(self, state: BeliefState, choices: Mapping[Belief, Support] | None = None) -> None:
+        self._state = state
+        self._choices = choices
+        self._done: dict[Belief, Explanation] = {}
+        self._percepts: dict[tuple[str, Value], Percept] | None = None
+
+    def of(self, belief: Belief) -> Explanation:
+        """Explain a belief, and before it all that it rests on, without recursion."""
+        done, waiting = self._done, [belief]
+        begun: dict[Belief, Support | Percept | None] = {}
+        while waiting:
+            each = waiting[-1]
+            if each in done:
+                waiting.pop()
+                continue
+            again = each in begun
+            if not again:
+                begun[each] = self.support(each)
+            support = begun[each]
+            premises = support.matched if isinstance(support, Derivation) else ()
+            missing = [premise for premise in premises if premise not in done]
+            if not missing:
+                waiting.pop()
+                below = tuple([done[premise] for premise in premises])
+                done[each] = Explanation(each, self._state.cycle, support, below)
+            elif again:  # what it rests on has come back to it
+                self._choices = well_founded([belief], self._state.supports)
+                waiting, begun = [belief], {}
+            else:
+                waiting += reversed(missing)
+        return done[belief]
+
+    def is_perceived(self, belief: Belief) -> bool:
+        """Tell whether a belief is a percept as a fact."""
+        return self._percept(belief) is not None
+
+    def support(self, belief: Belief) -> Support | Percept | None:
+        """Give the support to follow; None for what is not believed."""
+        if self._choices is not None:
+            return self._choices.get(belief) or self._percept(belief)
+        supports = self._state.supports.get(belief)
+        return supports[0] if supports else self._percept(belief)
+
+    def _percept(self, belief: Belief) -> Percept | None:
+        """Give the percept that a fact stands for: of that type, or of one that is a kind of it."""
+        if self._percepts is None:
+            self._percepts = {(each.type, each.name): each for each in self._state.percepts}
+        if len(belief.args) != 1:
+            return None
+        name = belief.args[0]
+        found = self._percepts.get((belief.predicate, name))
+        if found is not None:
+            return found
+        for kind, lineage in self._state.lineages.items():
+            if belief.predicate in lineage and (kind, name) in self._percepts:
+                return self._percepts[kind, name]
+        return None

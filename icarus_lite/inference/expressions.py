@@ -16,7 +16,15 @@ from operator import itemgetter
 from typing import TypeAlias
 
 from icarus_lite.inference.views import Row
-from icarus_lite.language.functions import FUNCTIONS, Function, Kind, PythonFunctions, evaluate
+from icarus_lite.language.functions import (
+    FUNCTIONS,
+    Function,
+    Kind,
+    PythonFunctions,
+    as_truth,
+    as_value,
+    evaluate,
+)
 from icarus_lite.language.syntax import Call, Constant, Expression, Variable
 from icarus_lite.symbols import Value, is_number
 
@@ -75,6 +83,30 @@ def compile_expression(
             return as_evaluated(row)
 
     return compiled
+
+
+def compile_test(
+    test: Expression, slots: Mapping[str, int], functions: PythonFunctions, path: str
+) -> Compiled:
+    """Give a function of a row with the answer of a test: true or false, nothing else.
+
+    Only a Python function can come to something else, which is then an InferenceError.
+    """
+    compiled = compile_expression(test, slots, functions, path)
+    if isinstance(test, Call) and test.function in FUNCTIONS:
+        return compiled
+    return lambda row: as_truth(compiled(row), test, path)
+
+
+def compile_bind(
+    expression: Expression, slots: Mapping[str, int], functions: PythonFunctions, path: str
+) -> Callable[[Row], Value]:
+    """Give a function of a row with what a bind computes: a number or symbol, nothing else.
+
+    Only a Python function can come to something else, which is then an InferenceError.
+    """
+    compiled = compile_expression(expression, slots, functions, path)
+    return lambda row: as_value(compiled(row), expression, path)
 
 
 def conjoin(tests: Sequence[Compiled]) -> Compiled | None:

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from types import MappingProxyType
 
+from icarus_lite.errors import FrameError
 from icarus_lite.inference.views import Entry, Index, Key, View
 from icarus_lite.language.syntax import Atom, Term, Variable
-from icarus_lite.symbols import Belief, Percept, Value
+from icarus_lite.symbols import Action, Belief, Percept, Value, is_number
 
 Bindings = Mapping[str, Value]
 """What each variable, `?` included, is bound to."""
@@ -34,6 +35,33 @@ def percept_facts(percepts: Iterable[Percept], lineages: Lineages) -> Iterator[B
         yield percept_fact(percept)
         for supertype in lineages.get(percept.type, ())[1:]:
             yield Belief(supertype, (percept.name,), percept.attributes)
+
+
+def check_values(percept: Percept) -> None:
+    """See that every attribute of a percept is a symbol or a finite number.
+
+    Raises:
+        FrameError: one is not; the message names it.
+    """
+    for attribute, value in percept.attributes.items():
+        if not isinstance(value, str) and not is_number(value):
+            raise FrameError(f"attribute {attribute} of {percept.name} is {_fault(value)}")
+
+
+def check_arguments(action: Action) -> None:
+    """See that every argument of an action is a symbol or a finite number.
+
+    Raises:
+        FrameError: one is not; the message names it.
+    """
+    for place, value in enumerate(action.args, 1):
+        if not isinstance(value, str) and not is_number(value):
+            raise FrameError(f"argument {place} of {action.name} is {_fault(value)}")
+
+
+def _fault(value: object) -> str:
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    return f"{value!r}, {'not finite' if number else 'neither a number nor a symbol'}"
 
 
 class FactStore:

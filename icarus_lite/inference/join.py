@@ -21,7 +21,7 @@ from dataclasses import dataclass
 from enum import Enum
 from operator import itemgetter
 
-from icarus_lite.inference.expressions import Compiled, compile_expression, conjoin
+from icarus_lite.inference.expressions import Compiled, compile_test, conjoin
 from icarus_lite.inference.facts import FactStore
 from icarus_lite.inference.views import Entry, Key, Row, View, key_getter, row_getter
 from icarus_lite.language.functions import PythonFunctions
@@ -213,7 +213,7 @@ def compile_plan(
 
     def compiled(turn: int) -> list[Compiled]:
         known = dict(slots)
-        return [compile_expression(t, known, functions, path) for t in conjunction.tests[turn]]
+        return [compile_test(t, known, functions, path) for t in conjunction.tests[turn]]
 
     before = conjoin(compiled(0))
     order = list(range(len(positive)))

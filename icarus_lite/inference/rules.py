@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 from icarus_lite.errors import InferenceError
-from icarus_lite.inference.expressions import Compiled, compile_expression
+from icarus_lite.inference.expressions import compile_bind
 from icarus_lite.inference.facts import FactStore
 from icarus_lite.inference.join import Plan
 from icarus_lite.inference.matching import Evaluator, Matcher
@@ -88,7 +88,7 @@ class _Head:
 
     clause: ConceptClause
     negative: tuple[Atom, ...]
-    binds: tuple[Compiled, ...]
+    binds: tuple[Callable[[Row], Value], ...]
     constants: Row
     args: Callable[[Row], Row]
     attributes: Callable[[Row], Row]
@@ -102,7 +102,7 @@ class _Head:
         width = len(plan.constants) + len(slots)
         binds = []
         for bind in clause.binds:
-            compiled = compile_expression(
+            compiled = compile_bind(
                 bind.expression, dict(slots), evaluator.functions, evaluator.path
             )
             binds.append(compiled)

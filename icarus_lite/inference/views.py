@@ -66,6 +66,11 @@ class View:
         """The predicate whose facts are looked at."""
         return self._identity[0]
 
+    @property
+    def places(self) -> tuple[int, ...]:
+        """The cells that facts are looked up by: arguments first, then attributes."""
+        return self._identity[3]
+
     def __hash__(self) -> int:
         return self._hash
 

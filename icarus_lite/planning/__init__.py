@@ -1,13 +1,16 @@
 """Planning: from beliefs and goals to the next skill."""
 
 from icarus_lite.planning.candidates import Candidate, candidates
+from icarus_lite.planning.failures import Failure, FailureReason
 from icarus_lite.planning.relevance import Relevance, can_change, relevance
 from icarus_lite.planning.search import DEFAULT_LIMIT, NoPlan, Plan, find_plan
-from icarus_lite.planning.situation import Imagination, PlanStep, Situation, holds
+from icarus_lite.planning.situation import Imagination, PlanStep, Situation, holds, plan_step
 
 __all__ = [
     "DEFAULT_LIMIT",
     "Candidate",
+    "Failure",
+    "FailureReason",
     "Imagination",
     "NoPlan",
     "Plan",
@@ -18,5 +21,6 @@ __all__ = [
     "candidates",
     "find_plan",
     "holds",
+    "plan_step",
     "relevance",
 ]

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from icarus_lite.inference import FactStore
 from icarus_lite.language.syntax import Condition, Constant, Domain
+from icarus_lite.planning.failures import FailureReason
 from icarus_lite.planning.relevance import can_change, relevance
 from icarus_lite.planning.situation import Imagination, PlanStep, Situation
 from icarus_lite.symbols import Action
@@ -30,10 +31,12 @@ class NoPlan:
     Args:
         reason: A sentence for the person who asked.
         final: True when no plan can exist for these percepts, False when a limit was reached.
+        failure: The name of the reason.
     """
 
     reason: str
     final: bool
+    failure: FailureReason = FailureReason.GOAL_UNREACHABLE
 
 
 def find_plan(
@@ -69,7 +72,8 @@ def find_plan(
     expanded = 0
     while frontier:
         if expanded >= limit:
-            return NoPlan(f"no plan among the first {limit} situations imagined", final=False)
+            reason = f"no plan among the first {limit} situations imagined"
+            return NoPlan(reason, final=False, failure=FailureReason.SEARCH_LIMIT)
         situation, steps = frontier.popleft()
         expanded += 1
         facts = imagination.facts(situation)
@@ -83,7 +87,7 @@ def find_plan(
             if imagination.holds(goals, imagination.facts(imagined)):
                 return Plan((*steps, step))
             frontier.append((imagined, (*steps, step)))
-    return NoPlan(_dead_end(domain, imagination, goals, excluded), final=True)
+    return _dead_end(domain, imagination, goals, excluded)
 
 
 def _hopeless(domain: Domain, imagination: Imagination, goal: Condition, facts: FactStore) -> str:
@@ -110,12 +114,14 @@ def _dead_end(
     imagination: Imagination,
     goals: Sequence[Condition],
     excluded: Collection[Action],
-) -> str:
+) -> NoPlan:
     wanted = " ".join(str(goal) for goal in goals)
     facts = imagination.facts(imagination.start)
     possible = imagination.applicable(relevance(domain, goals).skills, facts)
     names = sorted({str(step.action) for step in possible if step.action not in excluded})
     if names:
         shown = ", ".join(names[:3]) + (", …" if len(names) > 3 else "")
-        return f"no sequence of skills reaches {wanted}, though {shown} could start now"
-    return f"no skill that serves {wanted} can start now"
+        reason = f"no sequence of skills reaches {wanted}, though {shown} could start now"
+        return NoPlan(reason, final=True)
+    reason = f"no skill that serves {wanted} can start now"
+    return NoPlan(reason, final=True, failure=FailureReason.CONDITIONS_UNSATISFIED)

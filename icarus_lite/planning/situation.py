@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator, Sequence
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from icarus_lite.inference import (
@@ -40,6 +40,21 @@ class PlanStep:
     clause: SkillClause
     bindings: tuple[tuple[str, Value], ...]
     change: Change
+
+
+def plan_step(clause: SkillClause, bindings: Mapping[str, Value]) -> PlanStep | None:
+    """Give a primitive skill instance as a step; None if an argument of it is still free."""
+    head = ground(clause.head, bindings)
+    commands = tuple(ground(command, bindings) for command in clause.actions)
+    if head is None or None in commands:
+        return None
+    return PlanStep(
+        Action(head.predicate, head.args),
+        tuple(Action(c.predicate, c.args) for c in commands if c is not None),
+        clause,
+        tuple(sorted(bindings.items())),
+        change_of(clause.effects, bindings),
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,17 +131,9 @@ class Imagination:
             matcher = Matcher(clause.elements, clause.tests, evaluator=self.evaluator)
             self._matchers[id(clause)] = matcher
         for found in matcher.matches(facts, bindings):
-            head = ground(clause.head, found.bindings)
-            commands = tuple(ground(command, found.bindings) for command in clause.actions)
-            if head is None or None in commands:
-                continue  # the checker has warned: an argument that nothing binds
-            yield PlanStep(
-                Action(head.predicate, head.args),
-                tuple(Action(c.predicate, c.args) for c in commands if c is not None),
-                clause,
-                tuple(sorted(found.bindings.items())),
-                change_of(clause.effects, found.bindings),
-            )
+            step = plan_step(clause, found.bindings)
+            if step is not None:  # otherwise the checker has warned: nothing binds an argument
+                yield step
 
     def after(self, situation: Situation, step: PlanStep) -> Situation:
         """Give the situation after a step, as the engine would believe it on success."""

@@ -12,6 +12,7 @@ from typing import Self
 from icarus_lite._version import __version__
 from icarus_lite.agent import Decision
 from icarus_lite.errors import TraceError
+from icarus_lite.execution import SkillPath
 from icarus_lite.inference import Assertion, Support
 from icarus_lite.language.syntax import Domain
 from icarus_lite.symbols import Outcome, Percept
@@ -68,6 +69,8 @@ def cycle_record(
         "removed": [str(belief) for belief in decision.removed],
         "goals": [{"goal": str(g.goal), "satisfied": g.satisfied} for g in decision.goals],
         "path": [str(step.action) for step in decision.path],
+        "skills": None if decision.skill_path is None else _skill_path(decision.skill_path),
+        "intentions": [{"skill": str(i.skill), "done": i.done} for i in decision.intentions],
         "decision": {
             "kind": str(decision.kind),
             "action": None if decision.step is None else str(decision.step.action),
@@ -78,9 +81,24 @@ def cycle_record(
             {"skill": c.skill, "chosen": c.chosen, "why_not": c.why_not}
             for c in decision.candidates
         ],
+        "failures": [{"reason": str(f.reason), "text": f.text} for f in decision.failures],
         "notes": list(decision.state.notes),
         **extra,
     }
+
+
+def _skill_path(path: SkillPath) -> dict[str, object]:
+    """Give a skill path from its aim down to the primitive, with the clause of each level."""
+    levels = [
+        {
+            "skill": str(level),
+            "line": level.clause.span.line,
+            "position": level.position,
+            "bindings": dict(level.bindings),
+        }
+        for level in path.levels
+    ]
+    return {"aims": [str(aim) for aim in path.aims], "levels": levels}
 
 
 def _outcome(outcome: Outcome) -> dict[str, object]:

@@ -13,8 +13,11 @@ import typer
 
 from icarus_lite import IcarusError
 from runtime.cli import (  # noqa: F401 - each adds its commands
+    cater,
+    cater_generate,
     checking,
     editing,
+    explain,
     formatting,
     inferring,
     pddl,

@@ -267,3 +267,14 @@ def test_a_test_is_not_asked_about_what_an_earlier_condition_rules_out() -> None
     facts = [fact("start", "a"), fact("start", 1), fact("numbered", 1)]
     facts += [fact("next", 1, 2), fact("next", "a", 3)]
     assert derive(text, *facts) == {"(reached a)", "(reached 1)", "(reached 2)"}
+
+
+def test_attributes_do_not_depend_on_the_order_of_the_facts() -> None:
+    domain, problems = parse_domain(
+        "(percepts (a ^v)) (concepts ((size ^v ?v) :elements ((a ?x ^v ?v))))"
+    )
+    assert domain is not None, problems
+    facts = [Belief("a", (f"a{v}",), {"v": v}) for v in (3, "big", 1, 2)]
+    for ordered in (facts, facts[::-1]):
+        (size,) = Closure(domain.concepts).derive(FactStore(ordered))
+        assert size.attributes == {"v": 1}

@@ -6,7 +6,7 @@ from icarus_lite import Action, Percept
 from icarus_lite.inference import InferenceEngine, Memory
 from icarus_lite.language.fragments import parse_conditions
 from icarus_lite.language.reading.reader import parse_domain
-from icarus_lite.planning import Imagination, NoPlan, Plan, find_plan
+from icarus_lite.planning import FailureReason, Imagination, NoPlan, Plan, find_plan
 
 BLOCKS = """
 (percepts (block ^x ^y) (table) (hand ^status))
@@ -125,7 +125,8 @@ def test_an_impasse_names_what_could_start() -> None:
 
 def test_the_limit_is_said_to_be_a_limit() -> None:
     found = plan(BLOCKS, blocks("ac", "b"), "((on a b) (on b c))", limit=3)
-    assert found == NoPlan("no plan among the first 3 situations imagined", final=False)
+    reason = "no plan among the first 3 situations imagined"
+    assert found == NoPlan(reason, final=False, failure=FailureReason.SEARCH_LIMIT)
 
 
 def test_an_excluded_action_is_not_used() -> None:

@@ -41,7 +41,7 @@ def test_what_was_written_is_read(tmp_path: Path) -> None:
         "kind": "act",
         "action": "(switch l1)",
         "commands": ["(press l1)"],
-        "reason": "first of 1 steps to the goal",
+        "reason": "(lit l1) → (switch l1)",
     }
     assert first["added"] == [
         {

@@ -1,0 +1,99 @@
+"""What has been tried on the way to an aim, so that the same is not tried for ever."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Hashable, Iterable
+
+from icarus_lite.execution.path import Bound, Level
+from icarus_lite.symbols import Action
+
+MAX_ATTEMPTS = 3
+"""How often one action may fail before execution and planning do without it."""
+
+MAX_BEGUN_ALIKE = 3
+"""How often a skill instance may be begun in the very same state."""
+
+MAX_BEGUN = 1_000
+"""How often it may be begun at all on the way to one aim: percepts with noise never repeat."""
+
+MAX_PLANS_ALIKE = 10
+"""How often plans made in the very same state may be carried through without reaching the goal."""
+
+
+class Experience:
+    """Remembers which actions have failed, and in which states what was begun."""
+
+    __slots__ = ("_begun", "_disappointments", "_failures", "_plans", "_times")
+
+    def __init__(self) -> None:
+        self._failures: dict[Action, list[str]] = {}
+        self._disappointments: dict[tuple[Action, Hashable], list[str]] = {}
+        self._begun: dict[tuple[int, Bound, Hashable], list[int]] = {}
+        self._times: Counter[tuple[int, Bound]] = Counter()
+        self._plans: Counter[Hashable] = Counter()
+
+    @property
+    def given_up(self) -> dict[Action, str]:
+        """The actions that have failed too often, each with the reason of its last failure."""
+        failures = self._failures.items()
+        given_up = {action: why[-1] for action, why in failures if len(why) >= MAX_ATTEMPTS}
+        for (action, _), why in self._disappointments.items():
+            if len(why) >= MAX_ATTEMPTS:
+                given_up.setdefault(action, why[-1])
+        return given_up
+
+    def note_failure(self, action: Action, why: str) -> None:
+        """Remember that an action has failed."""
+        self._failures.setdefault(action, []).append(why)
+
+    def note_disappointment(self, action: Action, scene: Hashable, why: str) -> None:
+        """Remember that an action was carried out, and its effects were not believed.
+
+        Only what happens from the very same state counts together: a hand that is lowered step
+        by step, or in whose way somebody has come, need not be given up.
+        """
+        self._disappointments.setdefault((action, scene), []).append(why)
+
+    def note_success(self, action: Action) -> None:
+        """Remember that an action works after all."""
+        self._failures.pop(action, None)
+        for key in [key for key in self._disappointments if key[0] == action]:
+            del self._disappointments[key]
+
+    def note_begun(self, levels: Iterable[Level], scene: Hashable, cycle: int) -> None:
+        """Remember the skills that are begun in a cycle."""
+        for level in levels:
+            instance = (id(level.clause), level.bindings)
+            self._begun.setdefault((*instance, scene), []).append(cycle)
+            self._times[instance] += 1
+
+    def circle(self, level: Level, scene: Hashable) -> str:
+        """Say why beginning a skill now would be going in a circle; empty if it would not."""
+        instance = (id(level.clause), level.bindings)
+        cycles = self._begun.get((*instance, scene), [])
+        if len(cycles) >= MAX_BEGUN_ALIKE:
+            shown = ", ".join(map(str, cycles))
+            return f"it was begun in this same state in cycles {shown}"
+        if self._times[instance] >= MAX_BEGUN:
+            return f"it was begun {MAX_BEGUN} times already"
+        return ""
+
+    def note_plan_carried_through(self, scene: Hashable) -> None:
+        """Remember that all steps of a plan made in a state have been done, each to its effect."""
+        self._plans[scene] += 1
+
+    def planning_in_vain(self, scene: Hashable) -> str:
+        """Say why another plan from a state would not help; empty if it may."""
+        if self._plans[scene] < MAX_PLANS_ALIKE:
+            return ""
+        return (
+            f"plans from this same state were carried through {MAX_PLANS_ALIKE} times, "
+            "and what they were for is not believed"
+        )
+
+    def forget_beginnings(self) -> None:
+        """Begin afresh: what was aimed at is reached. Failures are remembered."""
+        self._begun.clear()
+        self._times.clear()
+        self._plans.clear()

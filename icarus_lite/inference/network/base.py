@@ -1,0 +1,335 @@
+"""What a network is told: percepts and assertions, checked where they enter, and taken back whole.
+
+Every write is noted with what was there before, until the cycle has succeeded.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from typing import Any, NamedTuple, TypeAlias
+
+from icarus_lite.errors import FrameError
+from icarus_lite.inference.facts import Lineages, check_values
+from icarus_lite.inference.network.changes import Delta
+from icarus_lite.inference.network.history import Kind, key_of
+from icarus_lite.symbols import Belief, Percept, Value, is_number
+
+Entry: TypeAlias = tuple[str, int, Any]
+"""A fact that may be given: its predicate, the number of its arguments, and its key."""
+
+_NUMERIC = {int, float}
+_ABSENT: Any = object()
+
+
+class Base:
+    """Percepts and assertions.
+
+    Args:
+        lineages: Each percept type with all types that its percepts belong to, its own first.
+
+    Attributes:
+        percepts: The attributes of each percept, by type and name; a move changes them in place.
+        asserted: The beliefs that are given, by kind and key.
+        touched: The facts that the cycle has touched so far.
+    """
+
+    __slots__ = ("_before", "_journal", "_lineages", "_owners", "asserted", "percepts", "touched")
+
+    def __init__(self, lineages: Lineages) -> None:
+        self._lineages = lineages
+        self.percepts: dict[str, dict[Value, dict[str, Value]]] = {}
+        self.asserted: dict[Kind, dict[Any, Belief]] = {}
+        self.touched: dict[Entry, None] = {}
+        self._owners: dict[tuple[str, Value], str] = {}
+        self._journal: list[_Entry | _Column] = []
+        self._before: dict[tuple[Kind, Any], Belief | None] = {}
+
+    def copy(self) -> Base:
+        """Give the same again, to go its own way."""
+        other = Base(self._lineages)
+        other.percepts = {
+            type_: {name: dict(attributes) for name, attributes in known.items()}
+            for type_, known in self.percepts.items()
+        }
+        other._owners = dict(self._owners)
+        other.asserted = {kind: dict(known) for kind, known in self.asserted.items()}
+        return other
+
+    def lineage(self, type_: str) -> Sequence[str]:
+        """Give all types that percepts of a type belong to, its own first."""
+        return self._lineages.get(type_, (type_,))
+
+    # -- writing -------------------------------------------------------------------------------
+
+    def take(self, delta: Delta) -> None:
+        """Take in what has changed.
+
+        Raises:
+            FrameError: a percept or assertion is not what it may be; `undo` what was written.
+        """
+        for type_, name in delta.gone:
+            if name in self.percepts.get(type_, ()):
+                self._write(self.percepts[type_], name, _ABSENT)
+                for each in self.lineage(type_):
+                    self._write(self._owners, (each, name), _ABSENT)
+                    self.touched[each, 1, name] = None
+        seen: set[tuple[str, str]] = set()
+        for percept in delta.percepts:
+            key = percept.type, percept.name
+            if key in seen:
+                raise _not_unique(percept.type, percept.name)
+            seen.add(key)
+            check_values(percept)
+            known = self.percepts.setdefault(percept.type, {})
+            self._write(known, percept.name, dict(percept.attributes))
+            for each in self.lineage(percept.type):
+                owner = self._owners.get((each, percept.name))
+                if owner is None:
+                    self._write(self._owners, (each, percept.name), percept.type)
+                elif owner != percept.type:
+                    raise _not_unique(each, percept.name)
+                self.touched[each, 1, percept.name] = None
+        self.give(delta.asserted, delta.withdrawn)
+
+    def give(self, asserted: Iterable[Belief], withdrawn: Iterable[Belief]) -> None:
+        """Take in assertions and withdrawals; what is both stays.
+
+        Raises:
+            FrameError: a number is not finite.
+        """
+        for belief in withdrawn:
+            self._give((belief.predicate, len(belief.args)), key_of(belief.args), None)
+        for belief in asserted:
+            for value in belief.args:
+                _check_value(f"an argument of {belief.predicate}", value)
+            if belief.attributes:
+                _check_attributes(str(belief), belief.attributes)
+            self._give((belief.predicate, len(belief.args)), key_of(belief.args), belief)
+
+    def _give(self, kind: Kind, key: Any, belief: Belief | None) -> None:
+        known = self.asserted.setdefault(kind, {})
+        old = known.get(key)
+        if old is None and belief is None:
+            return
+        self._before.setdefault((kind, key), old)
+        self._write(known, key, _ABSENT if belief is None else belief)
+        self.touched[(*kind, key)] = None
+
+    def move(
+        self, type_: str, names: Sequence[str], columns: Mapping[str, Sequence[Value]]
+    ) -> dict[str, Sequence[Value]]:
+        """Take in new values of some attributes of percepts that are there.
+
+        Returns:
+            The values as lists.
+
+        Raises:
+            FrameError: an object is not known or named twice, a value is missing or not finite.
+        """
+        lists = {a: _checked(a, names, values) for a, values in columns.items()}
+        known = self.percepts.get(type_, {})
+        try:
+            records = [known[name] for name in names]
+        except KeyError as error:
+            message = f"there is no percept of type {type_} named {error.args[0]} to be moved"
+            raise FrameError(message) from None
+        if len({*map(id, records)}) != len(records):
+            raise FrameError(f"an object of type {type_} is moved twice in one cycle")
+        for attribute, values in lists.items():
+            self._journal.append(_Column(records, attribute, _exchange(records, attribute, values)))
+        return lists
+
+    def touch(self, type_: str, names: Iterable[str]) -> None:
+        """Note that percepts have changed, under every type they belong to."""
+        for each in self.lineage(type_):
+            for name in names:
+                self.touched[each, 1, name] = None
+
+    def _write(self, where: dict[Any, Any], key: Any, value: Any) -> None:
+        self._journal.append(_Entry(where, key, where.get(key, _ABSENT)))
+        if value is _ABSENT:
+            where.pop(key, None)
+        else:
+            where[key] = value
+
+    def settle(self) -> None:
+        """The cycle has succeeded: what was before is forgotten."""
+        self._journal.clear()
+        self.touched.clear()
+        self._before.clear()
+
+    def undo(self) -> None:
+        """Take back all that was written in this cycle."""
+        _replay(self._journal)
+        self.settle()
+
+    @contextmanager
+    def undone(self) -> Iterator[None]:
+        """Be, for a while, what it was before this cycle."""
+        again = _replay(self._journal)
+        yield
+        _replay(again)
+
+    # -- reading -------------------------------------------------------------------------------
+
+    def perceived(self, entry: Entry) -> Mapping[str, Value] | None:
+        """Give the attributes of a percept, or None if there is none."""
+        predicate, arity, key = entry
+        owner = self._owners.get((predicate, key)) if arity == 1 else None
+        return None if owner is None else self.percepts[owner][key]
+
+    def given(self, entry: Entry) -> Mapping[str, Value] | None:
+        """Give the attributes of an assertion, or None if there is none."""
+        predicate, arity, key = entry
+        belief = self.asserted.get((predicate, arity), {}).get(key)
+        return None if belief is None else belief.attributes
+
+    def effective(self, entry: Entry) -> Mapping[str, Value] | None:
+        """Give the attributes that count: perceived before asserted."""
+        found = self.perceived(entry)
+        return self.given(entry) if found is None else found
+
+    def all(self) -> Iterator[Entry]:
+        """Give every fact that is perceived or asserted, each once."""
+        found: dict[Entry, None] = {(type_, 1, name): None for type_, name in self._owners}
+        for (predicate, arity), known in self.asserted.items():
+            found.update(((predicate, arity, key), None) for key in known)
+        return iter(found)
+
+    def assertions(self) -> Iterator[Belief]:
+        """Give all assertions."""
+        for known in self.asserted.values():
+            yield from known.values()
+
+    def changed_assertions(self) -> Iterator[tuple[Kind, Any, Belief | None, Belief | None]]:
+        """Give each assertion that this cycle has touched: as it was before, and as it is."""
+        for (kind, key), old in self._before.items():
+            yield kind, key, old, self.asserted[kind].get(key)
+
+    def difference(self, percepts: Iterable[Percept], asserted: Iterable[Belief]) -> Delta:
+        """Find out what is different from a whole picture of now.
+
+        Raises:
+            FrameError: two percepts of one type share a name.
+        """
+        seen: dict[tuple[str, Value], None] = {}
+        changed = []
+        nothing: dict[Value, dict[str, Value]] = {}
+        for percept in percepts:
+            key = percept.type, percept.name
+            if key in seen:
+                raise _not_unique(*key)
+            seen[key] = None
+            if self.percepts.get(percept.type, nothing).get(percept.name) != percept.attributes:
+                changed.append(percept)
+        count = sum(map(len, self.percepts.values()))
+        new = sum(p.name not in self.percepts.get(p.type, nothing) for p in changed)
+        gone: list[tuple[str, str]] = []
+        if count + new != len(seen):
+            gone = [
+                (type_, str(name))
+                for type_, known in self.percepts.items()
+                for name in known
+                if (type_, name) not in seen
+            ]
+        given: dict[tuple[Kind, Any], Belief] = {}
+        for belief in asserted:
+            given.setdefault(((belief.predicate, len(belief.args)), key_of(belief.args)), belief)
+        fresh = [
+            belief
+            for (kind, key), belief in given.items()
+            if (old := self.asserted.get(kind, {}).get(key)) is None
+            or old.attributes != belief.attributes
+        ]
+        withdrawn = [
+            belief
+            for kind, beliefs in self.asserted.items()
+            for key, belief in beliefs.items()
+            if (kind, key) not in given
+        ]
+        return Delta(tuple(changed), tuple(gone), tuple(fresh), tuple(withdrawn))
+
+
+class _Entry(NamedTuple):
+    """An entry of a dictionary, and what it was."""
+
+    where: dict[Any, Any]
+    key: Any
+    old: Any
+
+    def undone(self) -> _Entry:
+        """Put it back; give what puts it back again."""
+        again = _Entry(self.where, self.key, self.where.get(self.key, _ABSENT))
+        if self.old is _ABSENT:
+            self.where.pop(self.key, None)
+        else:
+            self.where[self.key] = self.old
+        return again
+
+
+class _Column(NamedTuple):
+    """One attribute of many objects, and what it was."""
+
+    records: Sequence[dict[str, Value]]
+    attribute: str
+    old: Sequence[Any]
+
+    def undone(self) -> _Column:
+        """Put it back; give what puts it back again."""
+        now = _exchange(self.records, self.attribute, self.old)
+        return _Column(self.records, self.attribute, now)
+
+
+def _exchange(
+    records: Sequence[dict[str, Value]], attribute: str, values: Sequence[Any]
+) -> list[Any]:
+    """Set an attribute of each object; give what it was."""
+    old = [record.get(attribute, _ABSENT) for record in records]
+    for record, value in zip(records, values, strict=True):
+        record[attribute] = value
+    if _ABSENT in values:
+        for record in records:
+            if record[attribute] is _ABSENT:
+                del record[attribute]
+    return old
+
+
+def _replay(journal: Sequence[_Entry | _Column]) -> list[_Entry | _Column]:
+    """Put everything back, the last write first; give the journal that puts it back again."""
+    return [each.undone() for each in reversed(journal)]
+
+
+def _checked(attribute: str, names: Sequence[str], values: Sequence[Value]) -> Sequence[Value]:
+    """Give the new values of an attribute as a list, once they are seen to be values."""
+    given: Any = values
+    if hasattr(given, "tolist"):  # an array
+        given = given.tolist()
+    if len(given) != len(names):
+        raise FrameError(f"{len(names)} objects, but {len(given)} values of {attribute}")
+    if {*map(type, given)} <= _NUMERIC:
+        try:
+            if math.isfinite(sum(given)):
+                return given  # type: ignore[no-any-return] # a sequence of numbers
+        except OverflowError:
+            pass  # an integer beyond every float, or else a sum of them: looked at one by one
+    for name, value in zip(names, given, strict=True):
+        _check_value(f"attribute {attribute} of {name}", value)
+    return given  # type: ignore[no-any-return] # a sequence of values
+
+
+def _not_unique(type_: str, name: Value) -> FrameError:
+    return FrameError(f"2 percepts of type {type_} are named {name}; names are unique")
+
+
+def _check_attributes(name: str, attributes: Mapping[str, Value]) -> None:
+    for attribute, value in attributes.items():
+        _check_value(f"attribute {attribute} of {name}", value)
+
+
+def _check_value(what: str, value: object) -> None:
+    if not isinstance(value, str) and not is_number(value):
+        number = isinstance(value, int | float) and not isinstance(value, bool)
+        fault = "not finite" if number else "neither a number nor a symbol"
+        raise FrameError(f"{what} is {value!r}, {fault}")

@@ -1,0 +1,357 @@
+"""A pair relation that is an order of keys: never stored, only the keys are.
+
+A test such as `left_of`, `(<= (+ (* 2 ?xa) ?wa) (- (* 2 ?xb) ?wb))`, compares a key of the left
+object with a key of the right one. Half a million of a million pairs may hold, and none of them
+needs to be written down: whether a pair holds is a comparison of two numbers, and what a move
+changes are the partners whose keys lie between the old key and the new one. Sorted keys show these
+at once, so that the cost follows the changes.
+"""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_left, bisect_right
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from icarus_lite.inference.network.kernels.columns import Columns, Numbers
+from icarus_lite.inference.network.kernels.costs import Costs
+from icarus_lite.inference.network.kernels.exact import ExactTest
+from icarus_lite.inference.network.kernels.keys import Keys
+from icarus_lite.inference.network.kernels.relation import Bind, Change, Pair, PairRelation
+from icarus_lite.inference.network.kernels.side import Side, SidePlan
+
+Slots = NDArray[np.intp]
+_Edge = Literal["left", "right"]
+
+
+@dataclass(frozen=True, slots=True)
+class OrderPlan:
+    """What is known of a relation once a domain is compiled.
+
+    Args:
+        left: The left side; its one input is the key.
+        right: The right side, likewise.
+        ascending: Whether the left key is the smaller one.
+        strict: Whether equal keys do not do.
+        distinct: Whether an object is never paired with itself.
+        distinct_first: Whether that is asked before anything else of a pair.
+        costs: What the ways to update it cost.
+    """
+
+    left: SidePlan
+    right: SidePlan
+    ascending: bool
+    strict: bool
+    distinct: bool
+    distinct_first: bool
+    costs: Costs
+
+
+class OrderRelation(PairRelation):
+    """See the module.
+
+    The keys are turned round where the left one is to be the greater, so that a pair always holds
+    when the left key is less than the right one (or equal). An object that takes no part has the
+    key infinity, which compares with none. Pairs with an odd object, of which only the exact test
+    can tell, are kept as they are.
+
+    Args:
+        plan: What is known of the rule.
+        columns: Its objects.
+        bind: Gives the exact test and the gates over columns.
+    """
+
+    __slots__ = (
+        "_bind",
+        "_count",
+        "_distinct",
+        "_exact",
+        "_left",
+        "_left_keys",
+        "_odd",
+        "_plan",
+        "_right",
+        "_right_keys",
+        "_same",
+        "_strict",
+    )
+
+    def __init__(self, plan: OrderPlan, columns: tuple[Columns, Columns], bind: Bind) -> None:
+        exact, gates = bind(columns)
+        self._plan = plan
+        self._bind = bind
+        self._exact: ExactTest = exact
+        self._same = columns[0] is columns[1]
+        self._strict = plan.strict
+        self._distinct = plan.distinct
+        self._left = Side(plan.left, columns[0], gates[0])
+        self._right = Side(plan.right, columns[1], gates[1])
+        self._left_keys = Keys(math.inf)
+        self._right_keys = Keys(-math.inf)
+        self._odd: frozenset[Pair] = frozenset()
+        self._count = 0
+
+    def __len__(self) -> int:
+        return self._count + len(self._odd)
+
+    def holds(self, left: int, right: int) -> bool:
+        """Tell whether a pair of slots is in the relation; the slots must be known to it."""
+        f, g = self._left_keys.values[left], self._right_keys.values[right]
+        if f < g or (f == g and not self._strict):
+            return not self._distinct or (
+                left != right if self._same else not self._is_one(left, right)
+            )
+        return bool(self._odd) and (left, right) in self._odd
+
+    def of_left(self, left: int) -> Iterable[int]:
+        """Give the right slots that are paired with a left one, in ascending order."""
+        f, keys = self._left_keys.values[left], self._right_keys.values
+        if self._strict:
+            found = [j for j, g in enumerate(keys) if f < g]
+        else:
+            found = [j for j, g in enumerate(keys) if f <= g]
+        if self._distinct:
+            found = [j for j in found if not self._is_one(left, j)]
+        if self._odd:
+            found = sorted([*found, *(j for i, j in self._odd if i == left)])
+        return found
+
+    def of_right(self, right: int) -> Iterable[int]:
+        """Give the left slots that are paired with a right one, in ascending order."""
+        g, keys = self._right_keys.values[right], self._left_keys.values
+        if self._strict:
+            found = [i for i, f in enumerate(keys) if f < g]
+        else:
+            found = [i for i, f in enumerate(keys) if f <= g]
+        if self._distinct:
+            found = [i for i in found if not self._is_one(i, right)]
+        if self._odd:
+            found = sorted([*found, *(i for i, j in self._odd if j == right)])
+        return found
+
+    def pairs(self) -> Iterator[Pair]:
+        """Give all pairs, in ascending order."""
+        return ((i, j) for i in range(self._left.size) for j in self.of_left(i))
+
+    def copy(self, left: Columns, right: Columns) -> OrderRelation:
+        """Give a relation in the same state over copies of its columns."""
+        made = OrderRelation(self._plan, (left, right), self._bind)
+        made._left = self._left.copy(left, made._left.gate)
+        made._right = self._right.copy(right, made._right.gate)
+        made._left_keys, made._right_keys = self._left_keys.copy(), self._right_keys.copy()
+        made._odd, made._count = self._odd, self._count
+        return made
+
+    def load(self) -> None:
+        """Follow the columns from scratch, whatever has changed, without saying what it was."""
+        self._refresh(range(self._left.columns.size), range(self._right.columns.size))
+        self._odd = self._odd_pairs()
+        f, g = self._fresh_keys(self._left, left=True), self._fresh_keys(self._right, left=False)
+        ranked = np.sort(g)
+        below = np.searchsorted(ranked, f, side="right" if self._strict else "left")
+        self._count = int((len(ranked) - below).sum())
+        for keys, values in ((self._left_keys, f), (self._right_keys, g)):
+            keys.replace(values)
+        if self._distinct:
+            self._count -= self._own_pairs()
+
+    def update(self, changed_left: Sequence[int], changed_right: Sequence[int]) -> Change:
+        """Follow the columns; give the net change: see `PairRelation`."""
+        self._refresh(changed_left, changed_right)
+        odd = self._odd
+        if odd or self._left.odd or self._right.odd:
+            odd = self._odd_pairs()
+        self._left_keys.grow(self._left.size)
+        self._right_keys.grow(self._right.size)
+        costs, size = self._plan.costs, self._left.size + self._right.size
+        by_move = costs.moves(len(changed_left) + len(changed_right))
+        by_every = costs.every_key(self._left.size * self._right.size)
+        by_sort = costs.sorted_keys(size)
+        if by_move <= min(by_every, by_sort):
+            added, removed = self._by_move(changed_left, changed_right)
+        else:
+            added, removed = self._by_array(every=by_every < by_sort)
+        self._count += len(added) - len(removed)
+        if odd or self._odd:
+            gained, lost = {*added, *(odd - self._odd)}, {*removed, *(self._odd - odd)}
+            added, removed = sorted(gained - lost), sorted(lost - gained)
+            self._odd = odd
+        return added, removed
+
+    def _refresh(self, changed_left: Sequence[int], changed_right: Sequence[int]) -> None:
+        self._left.refresh(changed_left)
+        self._right.refresh(changed_right)
+
+    def _is_one(self, left: int, right: int) -> bool:
+        if self._same:
+            return left == right
+        return self._left.columns.names[left] == self._right.columns.names[right]
+
+    def _key(self, side: Side, values: list[float], slot: int, none: float) -> float:
+        if not side.present[slot] or slot in side.odd:
+            return none
+        return values[slot] if self._plan.ascending else -values[slot]
+
+    # One object after the other.
+
+    def _by_move(self, changed_left: Sequence[int], changed_right: Sequence[int]) -> Change:
+        """Find the partners between the old and the new key, left objects first."""
+        f, g = self._left_keys, self._right_keys
+        f.rank()
+        g.rank()
+        added: list[Pair] = []
+        removed: list[Pair] = []
+        fresh, cut = self._left.ready_lists()[0], bisect_right if self._strict else bisect_left
+        for i in changed_left:
+            key = self._key(self._left, fresh, i, f.none)
+            if key != f.values[i]:
+                old, new = cut(g.ranked, f.values[i]), cut(g.ranked, key)
+                if new > old:
+                    removed += [(i, j) for j in g.slots[old:new]]
+                elif new < old:
+                    added += [(i, j) for j in g.slots[new:old]]
+                f.set(i, key)
+        fresh, cut = self._right.ready_lists()[0], bisect_left if self._strict else bisect_right
+        before, gone = len(added), len(removed)
+        for j in changed_right:
+            key = self._key(self._right, fresh, j, g.none)
+            if key != g.values[j]:
+                old, new = cut(f.ranked, g.values[j]), cut(f.ranked, key)
+                if new > old:
+                    added += [(i, j) for i in f.slots[old:new]]
+                elif new < old:
+                    removed += [(i, j) for i in f.slots[new:old]]
+                g.set(j, key)
+        if (before and len(removed) > gone) or (gone and len(added) > before):
+            added, removed = _net(added, removed)
+        return self._apart(added), self._apart(removed)
+
+    def _apart(self, pairs: list[Pair]) -> list[Pair]:
+        if not self._distinct or not pairs:
+            return pairs
+        if self._same:
+            return [pair for pair in pairs if pair[0] != pair[1]]
+        return [pair for pair in pairs if not self._is_one(*pair)]
+
+    # All at once.
+
+    def _by_array(self, *, every: bool) -> Change:
+        """Compare all old keys with all new ones, every pair or by sorting."""
+        f_old, g_old = self._left_keys.array(), self._right_keys.array()
+        f, g = self._fresh_keys(self._left, left=True), self._fresh_keys(self._right, left=False)
+        if every:
+            old, new = self._compare(f_old[:, None], g_old), self._compare(f[:, None], g)
+            i, j = np.nonzero(old != new)
+            gained = new[i, j]
+        else:
+            i, j = self._crossed(f_old, g_old, f, g)
+            gained = self._compare(f[i], g[j])
+        if self._same and self._distinct:
+            apart = i != j
+            i, j, gained = i[apart], j[apart], gained[apart]
+        for keys, values in ((self._left_keys, f), (self._right_keys, g)):
+            keys.replace(values)
+        lost = ~gained
+        added = list(zip(i[gained].tolist(), j[gained].tolist(), strict=True))
+        removed = list(zip(i[lost].tolist(), j[lost].tolist(), strict=True))
+        if self._same:
+            return added, removed
+        return self._apart(added), self._apart(removed)
+
+    def _compare(self, f: Numbers, g: Numbers) -> NDArray[np.bool_]:
+        return f < g if self._strict else f <= g
+
+    def _crossed(
+        self, f_old: Numbers, g_old: Numbers, f: Numbers, g: Numbers
+    ) -> tuple[Slots, Slots]:
+        """Give the pairs of which the answer has changed.
+
+        Either it changes when the left key moves among the old right keys, or when the right key
+        moves among the new left keys; if both, it has not changed.
+        """
+        low: _Edge = "right" if self._strict else "left"
+        high: _Edge = "left" if self._strict else "right"
+        order = np.argsort(g_old)
+        ranked = g_old[order]
+        i, place = _between(
+            np.searchsorted(ranked, f_old, side=low), np.searchsorted(ranked, f, side=low)
+        )
+        j = order[place]
+        net = self._compare(f_old[i], g_old[j]) != self._compare(f[i], g[j])
+        i, j = i[net], j[net]
+        order = np.argsort(f)
+        ranked = f[order]
+        second, place = _between(
+            np.searchsorted(ranked, g_old, side=high), np.searchsorted(ranked, g, side=high)
+        )
+        first = order[place]
+        at_first = self._compare(f_old[first], g_old[second])
+        net = at_first == self._compare(f[first], g_old[second])
+        return np.concatenate([i, first[net]]), np.concatenate([j, second[net]])
+
+    def _fresh_keys(self, side: Side, *, left: bool) -> Numbers:
+        """Give the new key of each slot."""
+        none = math.inf if left else -math.inf
+        keys = side.ready_arrays()[0] if side.size else np.zeros(0)
+        keys = keys.copy() if self._plan.ascending else -keys
+        if not side.is_regular:
+            keys[~side.regular()] = none
+        return keys
+
+    def _own_pairs(self) -> int:
+        """Count the pairs of one object that the keys alone would allow."""
+        f, g = self._left_keys.values, self._right_keys.values
+        if self._same:
+            own: Iterable[Pair] = ((slot, slot) for slot in range(len(f)))
+        else:
+            names, twins = self._left.columns.names, self._right.columns.slots
+            own = ((i, twins[name]) for i, name in enumerate(names) if name in twins)
+        return sum(f[i] < g[j] or (f[i] == g[j] and not self._strict) for i, j in own)
+
+    def _odd_pairs(self) -> frozenset[Pair]:
+        """Ask the exact test about each pair with an odd object.
+
+        Raises:
+            InferenceError: it cannot be evaluated, as is mostly why an object is odd.
+        """
+        left, right = self._left, self._right
+        pairs = [
+            (i, j)
+            for i in range(left.size)
+            if left.present[i]
+            for j in (range(right.size) if i in left.odd else sorted(right.odd))
+            if right.present[j]
+        ]
+        return frozenset(pair for pair in pairs if self._is_exactly(*pair))
+
+    def _is_exactly(self, left: int, right: int) -> bool:
+        is_one = self._distinct and self._is_one(left, right)
+        if is_one and self._plan.distinct_first:
+            return False
+        return self._exact(left, right) and not is_one
+
+
+def _net(added: list[Pair], removed: list[Pair]) -> Change:
+    """Leave out the pairs that were gained and lost again."""
+    both = set(added).intersection(removed)
+    if not both:
+        return added, removed
+    return (
+        [pair for pair in added if pair not in both],
+        [pair for pair in removed if pair not in both],
+    )
+
+
+def _between(old: Slots, new: Slots) -> tuple[Slots, Slots]:
+    """Give who has moved past what: each index with each place between its old and new one."""
+    who = np.flatnonzero(old != new)
+    low = np.minimum(old[who], new[who])
+    counts = np.abs(old[who] - new[who])
+    total = int(counts.sum())
+    skipped = low - (np.cumsum(counts) - counts)
+    return np.repeat(who, counts), np.arange(total, dtype=np.intp) + np.repeat(skipped, counts)
