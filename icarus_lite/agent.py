@@ -16,6 +16,7 @@ from icarus_lite.execution import (
 )
 from icarus_lite.inference import (
     BeliefState,
+    Budget,
     Change,
     Chronicle,
     Context,
@@ -56,6 +57,7 @@ class Agent:
         functions: Python predicates that `:tests` may call by name. They must be pure.
         given: Facts that are believed from the start, as in a task's `:init`. Percepts among
             them are left out: perception reports those itself.
+        budget: What one cycle of inference may cost.
 
     Raises:
         DomainError: a goal or an intention given as text does not parse.
@@ -78,6 +80,7 @@ class Agent:
         intentions: Iterable[str | Atom] = (),
         functions: Functions | None = None,
         given: Iterable[Atom] = (),
+        budget: Budget | None = None,
     ) -> None:
         self.domain = domain
         self.goals: tuple[Condition, ...] = tuple(
@@ -86,7 +89,7 @@ class Agent:
             for condition in (parse_conditions(goal) if isinstance(goal, str) else (goal,))
         )
         self.intentions: tuple[Atom, ...] = tuple(_as_call(each, domain) for each in intentions)
-        self._engine = InferenceEngine(domain, functions)
+        self._engine = InferenceEngine(domain, functions, budget)
         self._memory = given_memory(domain, given)
         self._executor = Executor(domain, self._engine.evaluator, self.goals, self.intentions)
         self._chronicle = Chronicle()

@@ -25,6 +25,7 @@ from icarus_lite.inference.near_miss import (
     near_misses,
     nearest_beliefs,
 )
+from icarus_lite.inference.network import Budget
 from icarus_lite.inference.supports import Assertion, Derivation, Support, bind_pattern
 
 __all__ = [
@@ -33,6 +34,7 @@ __all__ = [
     "Assertion",
     "BeliefState",
     "Bindings",
+    "Budget",
     "Change",
     "Chronicle",
     "Closure",

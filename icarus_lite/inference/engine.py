@@ -19,7 +19,7 @@ from icarus_lite.inference.facts import (
     percept_facts,
 )
 from icarus_lite.inference.matching import Evaluator, Functions
-from icarus_lite.inference.network import Network, compile_domain
+from icarus_lite.inference.network import Budget, Network, compile_domain
 from icarus_lite.inference.supports import Assertion, Support
 from icarus_lite.language.checking.stratification import strata
 from icarus_lite.language.percept_types import lineages
@@ -105,12 +105,17 @@ class InferenceEngine:
     Args:
         domain: A checked domain.
         functions: Python predicates that `:tests` may call by name. They must be pure.
+        budget: What one cycle may cost in beliefs and in time. A cycle that would cost more is an
+            InferenceError that names the clause.
     """
 
-    __slots__ = ("_network", "_order", "closure", "domain", "evaluator", "lineages")
+    __slots__ = ("_budget", "_network", "_order", "closure", "domain", "evaluator", "lineages")
 
-    def __init__(self, domain: Domain, functions: Functions | None = None) -> None:
+    def __init__(
+        self, domain: Domain, functions: Functions | None = None, budget: Budget | None = None
+    ) -> None:
         self.domain = domain
+        self._budget = budget
         self.lineages = lineages(domain.percepts)
         self.evaluator = Evaluator(functions or {}, domain.source.path)
         self.closure = Closure(domain.concepts, self.evaluator)
@@ -191,7 +196,7 @@ class InferenceEngine:
         given = _given(asserted, hierarchy)
         network = self._network
         if network is None:
-            network = compile_domain(self.domain, self.evaluator.functions).network()
+            network = compile_domain(self.domain, self.evaluator.functions).network(self._budget)
         changes = network.update_snapshot(percepts, given)
         self._network = network
         supports = BeliefSupports(

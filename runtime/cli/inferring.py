@@ -20,12 +20,16 @@ def infer(
     out: Annotated[
         Path | None, typer.Option(help="Where to write; standard output if left out.")
     ] = None,
+    max_beliefs: Annotated[
+        int, typer.Option(help="How many beliefs one concept may have.", min=1)
+    ] = 5_000_000,
+    max_seconds: Annotated[float, typer.Option(help="How long one cycle may take.", min=0)] = 30.0,
 ) -> None:
     """Infer the beliefs of each recorded cycle."""
-    from icarus_lite.inference import InferenceEngine, Memory
+    from icarus_lite.inference import Budget, InferenceEngine, Memory
     from icarus_lite.trace import beliefs_line, read_frames
 
-    engine = InferenceEngine(load(file))
+    engine = InferenceEngine(load(file), budget=Budget(max_beliefs, max_seconds))
     memory = Memory()
     with sink(out) as lines:
         for frame in read_frames(frames):

@@ -207,6 +207,20 @@ class TestInfer:
         assert f"{frames}:1: {file}:2:" in done.stderr
         assert "Traceback" not in done.stderr
 
+    def test_a_domain_that_explodes_names_the_clause_and_keeps_what_is_written(
+        self, tmp_path: Path
+    ) -> None:
+        file, out = tmp_path / "d.icr", tmp_path / "beliefs.jsonl"
+        file.write_text("(percepts (o))\n(concepts ((pair ?a ?b) :elements ((o ?a) (o ?b))))\n")
+        percepts = [{"type": "o", "name": name, "attributes": {}} for name in "abcd"]
+        cycles = [{"cycle": 0, "percepts": percepts[:1]}, {"cycle": 1, "percepts": percepts}]
+        frames = write_frames(tmp_path, cycles)
+        done = icarus("infer", file, "--frames", frames, "--out", out, "--max-beliefs", "9")
+        assert done.returncode == 2
+        assert f"{frames}:2: {file}:2:" in done.stderr
+        assert "more than 9 beliefs, the budget" in done.stderr
+        assert out.read_text() == '{"cycle": 0, "beliefs": ["(pair a a)"]}\n'
+
 
 class TestRun:
     def test_a_dry_run_reaches_the_goal_and_sends_nothing(

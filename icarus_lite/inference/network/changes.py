@@ -78,7 +78,7 @@ class Budget:
     """What one cycle may cost before it is stopped and taken back.
 
     Args:
-        facts: How many beliefs there may be in all.
+        facts: How many beliefs one concept may have.
         seconds: How long a cycle may take; None for as long as it needs.
     """
 

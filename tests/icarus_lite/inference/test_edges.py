@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from icarus_lite import Action, Belief, FrameError, InferenceError, Outcome, Percept
-from icarus_lite.inference import InferenceEngine, Memory
+from icarus_lite.inference import Budget, InferenceEngine, Memory
 from icarus_lite.language import parse_domain
 
 TEXT = """(percepts (object ^x))
@@ -129,3 +129,23 @@ class TestAttachments:
             "refused: (stack a a) would attach a to a, but it is the same",
         )
         assert not list(memory.state.hierarchy.pairs())
+
+
+def test_a_cycle_beyond_the_budget_names_the_clause_and_the_next_one_goes_on() -> None:
+    domain, _ = parse_domain(
+        "(percepts (thing ^x))\n(concepts ((pair ?a ?b) :elements ((thing ?a) (thing ?b))))",
+        "d.icr",
+    )
+    engine = InferenceEngine(domain, budget=Budget(facts=50))
+    things = [Percept("thing", f"t{number}", {"x": number}) for number in range(8)]
+    memory = engine.step(Memory(), things[:7])
+    assert len(memory.state.beliefs) == 49
+    with pytest.raises(InferenceError, match=r"d\.icr:2:.*more than 50 beliefs, the budget"):
+        engine.step(memory, things)
+    again = engine.step(memory, things[:2])
+    assert [str(belief) for belief in again.state.beliefs] == [
+        "(pair t0 t0)",
+        "(pair t0 t1)",
+        "(pair t1 t0)",
+        "(pair t1 t1)",
+    ]
