@@ -30,7 +30,7 @@ from tabletop.measuring import (
     Verdict,
     checked,
     makers,
-    own_peak_mb,
+    peak_line,
     peak_memory_mb,
     timed,
 )
@@ -322,7 +322,7 @@ def main() -> int:
     options = parser.parse_args()
     if options.memory_of:
         name, count, mode, frames = options.memory_of
-        print(own_peak_mb(name, int(count), Mode(mode), int(frames)))
+        print(peak_line(name, int(count), Mode(mode), int(frames)))
         return 0
     cells = []
     for count in options.objects:

@@ -9,12 +9,12 @@ the process.
 from __future__ import annotations
 
 import gc
-import resource
 import subprocess
 import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from tabletop.engines import (
     ClingoEngine,
@@ -32,6 +32,7 @@ OURS, SNAPSHOTS, CLIPS, CLINGO = "icarus-lite", "icarus-lite, snapshots", "CLIPS
 SCRATCH = "icarus-lite, from scratch"
 _SMALL = 50
 _EVERY = 50
+_PEAK = "peak resident MB: "
 
 
 def makers(workload: Workload) -> Mapping[str, Callable[[], Engine]]:
@@ -112,11 +113,15 @@ def peak_memory_mb(script: str, name: str, count: int, mode: Mode, frames: int) 
     """Measure an engine in a process of its own that does nothing else."""
     command = [sys.executable, script, "--memory-of", name, str(count), mode, str(frames)]
     done = subprocess.run(command, check=True, capture_output=True, text=True)  # noqa: S603 - this script
-    return float(done.stdout.splitlines()[0])
+    return next(
+        float(line.removeprefix(_PEAK))
+        for line in done.stdout.splitlines()  # CLIPS prints lines of its own
+        if line.startswith(_PEAK)
+    )
 
 
-def own_peak_mb(name: str, count: int, mode: Mode, frames: int) -> float:
-    """Run an engine over some frames; give the peak resident memory of this process."""
+def peak_line(name: str, count: int, mode: Mode, frames: int) -> str:
+    """Run an engine over some frames; give a line with the peak resident memory of this process."""
     workload = make_workload(count, mode, frames=frames)
     engine = makers(workload)[name]()
     state = workload.start
@@ -124,4 +129,16 @@ def own_peak_mb(name: str, count: int, mode: Mode, frames: int) -> float:
     for frame in workload.frames:
         state = state.after(frame)
         engine.prepare(frame, state)()
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    return f"{_PEAK}{_peak_kb() / 1024}"
+
+
+def _peak_kb() -> int:
+    """Give the most that this program has had resident; what its parent had does not count.
+
+    `getrusage` would count it: on Linux that figure outlives the start of another program.
+    """
+    for line in Path("/proc/self/status").read_text(encoding="ascii").splitlines():
+        name, _, value = line.partition(":")
+        if name == "VmHWM":
+            return int(value.split()[0])
+    raise OSError("/proc/self/status does not tell the peak memory")
