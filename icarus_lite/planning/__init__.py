@@ -2,8 +2,8 @@
 
 from icarus_lite.planning.candidates import Candidate, candidates
 from icarus_lite.planning.failures import Failure, FailureReason
+from icarus_lite.planning.planner import DEFAULT_LIMIT, NoPlan, Plan, find_plan
 from icarus_lite.planning.relevance import Relevance, can_change, relevance
-from icarus_lite.planning.search import DEFAULT_LIMIT, NoPlan, Plan, find_plan
 from icarus_lite.planning.situation import Imagination, PlanStep, Situation, holds, plan_step
 
 __all__ = [

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from icarus_lite.inference.near_miss import near_misses
 from icarus_lite.language.syntax import Condition, Domain
+from icarus_lite.planning.planner import NoPlan, Plan
 from icarus_lite.planning.relevance import relevance
-from icarus_lite.planning.search import NoPlan, Plan
 from icarus_lite.planning.situation import Imagination
 from icarus_lite.symbols import Action
 
