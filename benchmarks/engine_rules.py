@@ -198,7 +198,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--objects", type=int, default=50)
     parser.add_argument("--rounds", type=int, default=3)
-    parser.add_argument("--seconds", type=float, default=5.0, help="for a run of an engine")
+    parser.add_argument("--seconds", type=float, default=3.0, help="for a run of an engine")
     parser.add_argument("--out", type=Path)
     options = parser.parse_args()
     rows = [

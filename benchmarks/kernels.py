@@ -8,8 +8,9 @@ comprehensions, strips, blocks of numpy rows, a sweep (for an order of keys: one
 other, all keys against all, all keys sorted), and the way that is chosen at run time. Each is the
 lower quartile of the rounds, in microseconds of processor time of this thread (on a busy machine a
 median says more about its neighbours); the best way is starred.
-After each cell all ways must agree with a relation loaded afresh. At the end the constants of
-`icarus_lite/inference/network/kernels/costs.py` are fitted to the measured times.
+After each cell all ways must agree with a relation loaded afresh. Then the three rules are followed
+together, in each of the ways that a group has, and each by itself. At the end the constants of
+`icarus_lite/inference/network/kernels/costs.py` are fitted to the measured times of single rules.
 """
 
 from __future__ import annotations
@@ -29,11 +30,17 @@ from scipy.optimize import nnls
 
 from icarus_lite.inference.network.kernels import (
     Columns,
+    GroupProgram,
+    Member,
+    PairGroup,
     PairKernel,
     PairRelation,
     PairSide,
+    compile_group,
     compile_pair,
 )
+from icarus_lite.inference.network.kernels.columns import first_of_run
+from icarus_lite.inference.network.kernels.order import OrderRelation
 from icarus_lite.language import load_domain
 from icarus_lite.language.syntax import Atom, ConceptClause, Variable
 
@@ -46,6 +53,8 @@ WAYS = {
     "left-of": ("list", "block", "sweep"),
 }
 STEP_MM = 10
+GROUP_WAYS = ("few", "near", "whole", "alone")
+MOVED = ("x", "y", "z")
 
 
 def kernel_of(clause: ConceptClause) -> PairKernel:
@@ -136,6 +145,61 @@ def _check(kernel: PairKernel, columns: Columns, relations: dict[str, PairRelati
             raise SystemExit(f"{way} has gone wrong")
 
 
+def measure_group(program: GroupProgram, size: int, moving: int, rounds: int) -> dict[str, float]:
+    """Time the three rules together, on the same moves: microseconds by way."""
+    kernels = [member.kernel for member in program.members]
+    spent: dict[str, list[float]] = {}
+    for way in (*GROUP_WAYS, "chosen"):
+        rng = random.Random(1000 * size + moving)  # noqa: S311 # a scene, not a secret
+        rows, columns = scene(size, rng), Columns(ATTRIBUTES)
+        for number, row in enumerate(rows):
+            columns.put(f"o{number}", tuple(row))
+        relations = [kernel.instance(columns, columns) for kernel in kernels]
+        for relation in relations:
+            relation.load()
+        own = program if way == "chosen" else program.only_by(way)
+        group = PairGroup(own, relations, columns)  # type: ignore[arg-type] # of these two kinds
+        spent[way] = []
+        for _ in range(rounds):
+            moved = sorted(rng.sample(range(size), moving))
+            for slot in moved:
+                for axis in range(3):
+                    rows[slot][axis] += rng.randrange(-STEP_MM, STEP_MM + 1)
+            for place in range(3):
+                values = tuple(rows[slot][place] for slot in moved)
+                columns.assign(moved, [(place, values)], first_of_run(moved), plain=True)
+            begin = time.thread_time()
+            _follow(group, relations, moved)
+            spent[way].append(1e6 * (time.thread_time() - begin))
+        for kernel, relation in zip(kernels, relations, strict=True):
+            _check(kernel, columns, {f"{way} together": relation})
+    return {way: statistics.quantiles(found, n=4)[0] for way, found in spent.items()}
+
+
+def _follow(group: PairGroup, relations: Sequence[PairRelation], moved: list[int]) -> None:
+    found = group.follow(moved, MOVED)
+    for number, relation in enumerate(relations):
+        if found is None:
+            relation.update(moved, moved)
+        elif isinstance(relation, OrderRelation):
+            group.order(number)
+        elif number in found:
+            group.matrix(number, found[number])
+    if found is None:
+        group.disarm()
+
+
+def show_groups(program: GroupProgram, sizes: Sequence[int], rounds: int) -> None:
+    """Measure and print the three rules together, a line a scene and number of moving objects."""
+    print("\nall three together")
+    print(f"{'N':>6}{'k':>6}" + "".join(f"{way:>11}" for way in (*GROUP_WAYS, "chosen")))
+    for size in sizes:
+        for moving in sorted({1, 2, 5, size // 10, size // 3, size} - {0}):
+            fewer = max(5, rounds // (1 + moving * size // 100_000))
+            times = measure_group(program, size, moving, fewer)
+            print(f"{size:6}{moving:6}" + "".join(f"{value:11.1f}" for value in times.values()))
+
+
 def show(cells: Sequence[Cell]) -> None:
     """Print a line a cell."""
     print(f"{'rule':8}{'N':>6}{'k':>6}", end="")
@@ -205,6 +269,11 @@ def main() -> None:
                 rounds = max(5, arguments.rounds // (1 + moving * size // 100_000))
                 cells.append(measure(kernel, rule, size, moving, rounds))
     show(cells)
+    members = [Member(rule, kernel, "obj", "obj") for rule, kernel in kernels.items()]
+    program = compile_group("obj", members)
+    if program is None:
+        raise SystemExit("the rules cannot be followed together")
+    show_groups(program, arguments.objects, arguments.rounds)
     fit(cells, kernels)
 
 

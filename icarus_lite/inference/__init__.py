@@ -4,7 +4,15 @@ from icarus_lite.inference.attachment import ATTACHED, Hierarchy, Link, advance
 from icarus_lite.inference.closure import Closure
 from icarus_lite.inference.effects import Change, change_of
 from icarus_lite.inference.engine import BeliefState, InferenceEngine, Memory
-from icarus_lite.inference.explaining import Chronicle, Context, WhyNot, why_not
+from icarus_lite.inference.explaining import (
+    Chronicle,
+    Context,
+    Period,
+    WhyNot,
+    what_ended,
+    why_not,
+    why_not_document,
+)
 from icarus_lite.inference.explanation import Explanation, explain
 from icarus_lite.inference.facts import (
     Bindings,
@@ -25,7 +33,7 @@ from icarus_lite.inference.near_miss import (
     near_misses,
     nearest_beliefs,
 )
-from icarus_lite.inference.network import Budget
+from icarus_lite.inference.network import Budget, ForgottenError
 from icarus_lite.inference.supports import Assertion, Derivation, Support, bind_pattern
 
 __all__ = [
@@ -43,6 +51,7 @@ __all__ = [
     "Evaluator",
     "Explanation",
     "FactStore",
+    "ForgottenError",
     "Functions",
     "Hierarchy",
     "InferenceEngine",
@@ -52,6 +61,7 @@ __all__ = [
     "Memory",
     "NearMiss",
     "Obstacle",
+    "Period",
     "Support",
     "WhyNot",
     "advance",
@@ -69,5 +79,7 @@ __all__ = [
     "percept_facts",
     "resolve",
     "unify",
+    "what_ended",
     "why_not",
+    "why_not_document",
 ]

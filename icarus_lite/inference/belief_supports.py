@@ -1,15 +1,14 @@
 """The beliefs of one cycle with their supports, read from the network when somebody asks.
 
-As long as the network stands in that cycle, it answers. Once it has gone on, its log tells what
-was believed, and the supports are derived again from what was perceived and given then.
+As long as the network stands in that cycle, it answers. Once it has gone on, another one is told
+what was perceived and given then, and answers in its place.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from icarus_lite.inference.canonical import canonical
-from icarus_lite.inference.closure import Closure
 from icarus_lite.inference.facts import FactStore, Lineages, percept_facts
 from icarus_lite.inference.network import Changes, Network
 from icarus_lite.inference.supports import Support
@@ -25,35 +24,37 @@ class BeliefSupports(Mapping[Belief, tuple[Support, ...]]):
 
     Args:
         network: Stands in the cycle in question now.
-        closure: Derives again what the network no longer knows.
         order: The concepts, bottom first.
         given: The beliefs that are asserted, with what asserted them.
         percepts: What is perceived in the cycle.
-        lineages: Each percept type with all types that its percepts belong to.
-        changes: What the cycle has changed.
+        changes: What the cycle has changed; None if that is not known.
     """
 
     __slots__ = (
-        "_again", "_changes", "_closure", "_cycle", "_given", "_lineages", "_network", "_order",
-        "_percepts", "_sorted",
+        "_changes", "_concepts", "_cycle", "_given", "_network", "_order", "_percepts", "_sorted",
+        "_then",
     )  # fmt: skip
 
     def __init__(
         self,
         network: Network,
-        closure: Closure,
         order: Sequence[str],
         given: Mapping[Belief, tuple[Support, ...]],
         percepts: tuple[Percept, ...],
-        lineages: Lineages,
-        changes: Changes,
+        changes: Changes | None = None,
     ) -> None:
         self._changes = changes
-        self._network, self._closure, self._order = network, closure, order
+        self._network, self._order = network, order
+        self._concepts = frozenset(order)
         self._cycle = network.cycle
-        self._given, self._percepts, self._lineages = given, percepts, lineages
+        self._given, self._percepts = given, percepts
         self._sorted: tuple[Belief, ...] | None = None
-        self._again: Mapping[Belief, tuple[Support, ...]] | None = None
+        self._then: Network | None = None
+
+    @property
+    def given(self) -> Mapping[Belief, tuple[Support, ...]]:
+        """The beliefs that rest on actions, each with what asserted it."""
+        return self._given
 
     @property
     def is_current(self) -> bool:
@@ -70,20 +71,31 @@ class BeliefSupports(Mapping[Belief, tuple[Support, ...]]):
             return True
         if not isinstance(belief, Belief):
             return False
-        if self.is_current:
-            return self._network.holds(belief)
+        if self.is_current or self._cycle < self._network.first_cycle:
+            return self._standing().holds(belief)
         return any(
             start <= self._cycle and (end is None or self._cycle < end)
             for start, end in self._network.intervals(belief)
         )
 
     def __getitem__(self, belief: Belief) -> tuple[Support, ...]:
-        if belief not in self:
+        found = self._given.get(belief, ()) + self._standing().supports(belief)
+        if not found:
             raise KeyError(belief)
-        given = self._given.get(belief, ())
-        if self.is_current and self._again is None:
-            return given + self._network.supports(belief)
-        return given + self._derived_again().get(belief, ())
+        return found
+
+    def reasons(self) -> Callable[[Belief], Support | Percept | None]:
+        """Give what gives the first support of a belief, or the percept that a fact stands for.
+
+        It looks for no other supports. It is good as long as nothing is inferred.
+        """
+        return self._standing().reasons(self._given)
+
+    def percept(self, fact: Belief) -> Percept | None:
+        """Give the percept that a fact stands for: of that type, or of one that is a kind of it."""
+        if len(fact.args) != 1:
+            return None
+        return self._standing().percept(fact.predicate, fact.args[0])
 
     def __iter__(self) -> Iterator[Belief]:
         return iter(self._in_order())
@@ -96,22 +108,22 @@ class BeliefSupports(Mapping[Belief, tuple[Support, ...]]):
 
     def of(self, predicate: str) -> Iterator[Belief]:
         """Give the beliefs of one predicate, in order."""
-        if self._sorted is None and self.is_current:
-            given = [belief for belief in self._given if belief.predicate == predicate]
-            yield from given
+        if self._sorted is None:
+            yield from [belief for belief in self._given if belief.predicate == predicate]
             yield from self._concluded(predicate)
         else:
-            yield from (each for each in self._in_order() if each.predicate == predicate)
+            yield from (each for each in self._sorted if each.predicate == predicate)
 
     def count(self, predicate: str) -> int:
         """Count the beliefs of a predicate."""
-        if self._sorted is not None or not self.is_current:
+        if self._sorted is not None:
             return sum(1 for _ in self.of(predicate))
         given = [belief for belief in self._given if belief.predicate == predicate]
-        if predicate not in self._closure.concepts:
+        if predicate not in self._concepts:
             return len(given)
-        both = sum(self._network.holds(belief) for belief in given)
-        return len(given) + self._network.count(predicate) - both
+        network = self._standing()
+        both = sum(network.holds(belief) for belief in given)
+        return len(given) + network.count(predicate) - both
 
     def like(self, predicate: str, arity: int, known: Mapping[int, Value]) -> list[Belief]:
         """Give the beliefs of a predicate that have these values among their arguments, in order.
@@ -127,45 +139,38 @@ class BeliefSupports(Mapping[Belief, tuple[Support, ...]]):
                 belief.args[place] == value for place, value in known.items()
             )
 
-        if predicate not in self._closure.concepts or not self.is_current:
+        if predicate not in self._concepts:
             return [belief for belief in self.of(predicate) if fits(belief)]
         given = [each for each in self._given if each.predicate == predicate and fits(each)]
+        network = self._standing()
         concluded = [
-            each for each in self._network.like(predicate, arity, known) if each not in self._given
+            each for each in network.like(predicate, arity, known) if each not in self._given
         ]
         return given + sorted(concluded, key=_rank)
+
+    def _standing(self) -> Network:
+        """Give the network that stands in this cycle, or one that is told it again."""
+        network = self._network
+        if network.cycle == self._cycle:
+            return network
+        if self._then is None:
+            self._then = network.compiled.network()
+            self._then.update_snapshot(self._percepts, self._given)
+        return self._then
 
     def _in_order(self) -> tuple[Belief, ...]:
         if self._sorted is None:
             found = list(self._given)
-            if self.is_current:
-                for concept in self._order:
-                    found += self._concluded(concept)
-            else:
-                ranks = {concept: rank for rank, concept in enumerate(self._order)}
-                concluded = [
-                    belief
-                    for belief in self._network.held_at(self._cycle)
-                    if belief.predicate in ranks and belief not in self._given
-                ]
-                concluded.sort(key=lambda belief: (ranks[belief.predicate], _rank(belief)))
-                found += concluded
+            for concept in self._order:
+                found += self._concluded(concept)
             self._sorted = tuple(found)
         return self._sorted
 
     def _concluded(self, concept: str) -> list[Belief]:
-        if concept not in self._closure.concepts:
+        if concept not in self._concepts:
             return []
-        held = [each for each in self._network.facts(concept) if each not in self._given]
+        held = [each for each in self._standing().facts(concept) if each not in self._given]
         return sorted(held, key=_rank)
-
-    def _derived_again(self) -> Mapping[Belief, tuple[Support, ...]]:
-        if self._again is None:
-            facts = FactStore(percept_facts(self._percepts, self._lineages))
-            for belief in self._given:
-                facts.add(belief)
-            self._again = self._closure.derive(facts)
-        return self._again
 
 
 class LazyFacts(FactStore):

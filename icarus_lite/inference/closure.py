@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections import Counter
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from functools import partial
 
 from icarus_lite.inference.canonical import canonical
 from icarus_lite.inference.facts import FactStore
@@ -19,8 +21,26 @@ from icarus_lite.symbols import Belief
 class _Component:
     """Concepts that depend on one another, mostly a single one, with their rules as written."""
 
+    concepts: frozenset[str]
     rules: tuple[Rule, ...]
     recursive: bool
+    numbers: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """What deriving may cost.
+
+    Args:
+        most: How many beliefs of one concept may be derived.
+        tick: Is called now and then with the number of the clause that is being joined; it raises
+            an error when the time is over.
+        too_many: Is called with the number of a clause that concludes more; it raises an error.
+    """
+
+    most: int
+    tick: Callable[[int], None]
+    too_many: Callable[[int], None]
 
 
 class Closure:
@@ -61,11 +81,15 @@ class Closure:
             growing = frozenset(layer) if grows else frozenset()
             numbers = sorted(number for concept in layer for number in by_concept[concept])
             rules = tuple(Rule(known[number], growing, evaluator) for number in numbers)
-            components.append(_Component(rules, grows))
+            components.append(_Component(frozenset(layer), rules, grows, tuple(numbers)))
         self._components = tuple(components)
 
     def derive(
-        self, facts: FactStore, denied: frozenset[Belief] = frozenset()
+        self,
+        facts: FactStore,
+        denied: frozenset[Belief] = frozenset(),
+        among: frozenset[str] | None = None,
+        limits: Limits | None = None,
     ) -> dict[Belief, tuple[Support, ...]]:
         """Add to the facts all beliefs that follow from them.
 
@@ -73,6 +97,9 @@ class Closure:
             facts: Percepts and asserted beliefs; the derived beliefs are added to it.
             denied: Beliefs that must not be derived, whatever the clauses say. The planner uses
                 this to imagine an effect that perception has not confirmed yet.
+            among: The concepts to derive; the beliefs of the others are taken to be there. All
+                concepts if None.
+            limits: What it may cost; clauses are numbered as they were given.
 
         Returns:
             Each derived belief with its derivations. The first never rests on the belief itself,
@@ -82,7 +109,10 @@ class Closure:
             InferenceError: a test or a bind cannot be evaluated; the text has the place.
         """
         found: dict[Belief, list[Support]] = {}
+        counts: Counter[str] = Counter()
         for component in self._components:
+            if among is not None and component.concepts.isdisjoint(among):
+                continue
             asked = [0] * len(component.rules)
             first, fresh = True, True
             while fresh and (first or component.recursive):
@@ -90,7 +120,11 @@ class Closure:
                 for number, rule in enumerate(component.rules):
                     since, asked[number] = asked[number], facts.count
                     # All of it before any is added: a rule does not see what it just concluded.
-                    follows = tuple(rule.all(facts) if first else rule.new(facts, since))
+                    clause = component.numbers[number]
+                    tick = None if limits is None else partial(limits.tick, clause)
+                    follows = tuple(
+                        rule.all(facts, tick) if first else rule.new(facts, since, tick)
+                    )
                     decided = _least(belief for belief, _ in follows)
                     for concluded, derivation in follows:
                         if concluded in denied:
@@ -99,6 +133,9 @@ class Closure:
                         supports = found.get(belief)
                         if supports is None:
                             found[belief] = [derivation]
+                            counts[belief.predicate] += 1
+                            if limits is not None and counts[belief.predicate] > limits.most:
+                                limits.too_many(clause)
                         else:
                             supports.append(derivation)
                         fresh |= facts.add(belief)

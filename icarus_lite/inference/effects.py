@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from icarus_lite.inference.facts import Bindings, FactStore, ground, match, unify
-from icarus_lite.inference.matching import Evaluator, Matcher
+from icarus_lite.inference.matching import Evaluator
 from icarus_lite.inference.supports import bind_pattern
 from icarus_lite.language.syntax import Atom, Condition, SkillClause
 from icarus_lite.symbols import Action, Belief
@@ -48,7 +48,7 @@ def change_by_action(
     clauses: Sequence[SkillClause],
     action: Action,
     before: FactStore,
-    evaluator: Evaluator | None = None,
+    evaluator: Evaluator,
 ) -> Change:
     """Give the effects of a recorded action, of which only name and arguments are known.
 
@@ -59,7 +59,7 @@ def change_by_action(
     named = [(clause, _unify_head(clause, action)) for clause in clauses]
     candidates = [(clause, bound) for clause, bound in named if bound is not None]
     for clause, bound in candidates:
-        matcher = Matcher(clause.elements, clause.tests, tuple(bound), evaluator)
+        matcher = evaluator.matcher(clause.elements, clause.tests, tuple(bound))
         for found in matcher.matches(before, bound):
             return change_of(clause.effects, found.bindings)
     changes = [change_of(clause.effects, bound) for clause, bound in candidates]

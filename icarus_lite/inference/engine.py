@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from icarus_lite.errors import FrameError
-from icarus_lite.inference.attachment import ATTACHED, Hierarchy, advance
+from icarus_lite.inference.attachment import ATTACHED, Hierarchy, Link, advance
 from icarus_lite.inference.belief_supports import BeliefSupports, LazyFacts
+from icarus_lite.inference.causes import Causes
 from icarus_lite.inference.closure import Closure
 from icarus_lite.inference.effects import Change, change_by_action
 from icarus_lite.inference.facts import (
@@ -24,7 +25,7 @@ from icarus_lite.inference.supports import Assertion, Support
 from icarus_lite.language.checking.stratification import strata
 from icarus_lite.language.percept_types import lineages
 from icarus_lite.language.syntax import Domain
-from icarus_lite.symbols import Belief, Outcome, Percept, Status
+from icarus_lite.symbols import Belief, Outcome, Percept, Status, Value
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +55,32 @@ class BeliefState:
     def beliefs(self) -> tuple[Belief, ...]:
         """All beliefs, percepts left out, sorted as they are written."""
         return tuple(sorted(self.supports, key=str))
+
+    def asserted(self) -> Iterator[tuple[Belief, Assertion]]:
+        """Give the beliefs that rest on actions, with what asserted each; attachments last."""
+        supports = self.supports
+        rows = supports.given if isinstance(supports, BeliefSupports) else supports
+        for belief, (first, *_) in rows.items():
+            if isinstance(first, Assertion):
+                yield belief, first
+
+    def reasons(self) -> Callable[[Belief], Support | Percept | None]:
+        """Give what gives the first support of a belief, or the percept that a fact stands for.
+
+        None for what is neither. It is good until the next cycle is inferred.
+        """
+        if isinstance(self.supports, BeliefSupports):
+            return self.supports.reasons()
+        first, percept = self.supports.get, self.percept
+        return lambda fact: next(iter(first(fact, ())), None) or percept(fact)
+
+    def percept(self, fact: Belief) -> Percept | None:
+        """Give the percept that a fact stands for: of that type, or of one that is a kind of it."""
+        if isinstance(self.supports, BeliefSupports):
+            return self.supports.percept(fact)
+        named = (each for each in self.percepts if fact.args == (each.name,))
+        types = ((each, self.lineages.get(each.type, (each.type,))) for each in named)
+        return next((each for each, lineage in types if fact.predicate in lineage), None)
 
     def since(self, before: BeliefState) -> tuple[tuple[Belief, ...], tuple[Belief, ...]]:
         """Give the beliefs added and removed since another cycle, each sorted as written."""
@@ -105,11 +132,14 @@ class InferenceEngine:
     Args:
         domain: A checked domain.
         functions: Python predicates that `:tests` may call by name. They must be pure.
-        budget: What one cycle may cost in beliefs and in time. A cycle that would cost more is an
-            InferenceError that names the clause.
+        budget: What one cycle may cost in beliefs and in time; a cycle that would cost more is an
+            InferenceError that names the clause. And how many changes of past cycles to keep.
     """
 
-    __slots__ = ("_budget", "_network", "_order", "closure", "domain", "evaluator", "lineages")
+    __slots__ = (
+        "_budget", "_causes", "_network", "_order", "_past", "closure", "domain", "evaluator",
+        "lineages",
+    )  # fmt: skip
 
     def __init__(
         self, domain: Domain, functions: Functions | None = None, budget: Budget | None = None
@@ -121,6 +151,8 @@ class InferenceEngine:
         self.closure = Closure(domain.concepts, self.evaluator)
         self._order = tuple(concept for layer in strata(domain.concepts) for concept in layer)
         self._network: Network | None = None
+        self._causes = Causes()
+        self._past: BeliefState | None = None
 
     def step(
         self,
@@ -176,6 +208,52 @@ class InferenceEngine:
         state = self._infer(cycle, seen, asserted, hierarchy, tuple(notes))
         return Memory(state, asserted, known)
 
+    def recall(
+        self,
+        cycle: int,
+        percepts: Iterable[Percept],
+        asserted: Mapping[Belief, Assertion],
+        hierarchy: Hierarchy,
+        known: Iterable[str] = (),
+        notes: tuple[str, ...] = (),
+    ) -> Memory:
+        """Give the memory of a cycle from what was recorded of it, and derive its beliefs anew.
+
+        Args:
+            cycle: Its number.
+            percepts: What was perceived in it.
+            asserted: The effects that persisted then, `attached` left out.
+            hierarchy: The attachments of then.
+            known: The names of all objects perceived up to then; those of now are added.
+            notes: What the person should know.
+
+        Raises:
+            FrameError: as for `step`.
+            InferenceError: as for `step`.
+        """
+        seen = _checked(percepts, self.lineages)
+        state = self._infer(cycle, seen, asserted, hierarchy, notes)
+        return Memory(state, asserted, frozenset(known) | {percept.name for percept in seen})
+
+    def look_back(self, cycle: int) -> BeliefState:
+        """Give what was believed in a cycle of the run that the last step belongs to.
+
+        Percepts and assertions are taken back by the log of changes, and what follows from them
+        is derived again. Notes are not kept.
+
+        Raises:
+            ForgottenError: there was no such cycle, or it is no longer on record.
+        """
+        number = self._causes.number(cycle)
+        assert self._network is not None  # there has been a cycle
+        if self._past is None or self._past.cycle != cycle:
+            then = self._network.recall(number)
+            given, percepts = self._causes.at(cycle), then.percepts()
+            supports = BeliefSupports(then, self._order, given, percepts)
+            hierarchy = _hierarchy(given)
+            self._past = BeliefState(cycle, percepts, supports, hierarchy, (), self.lineages)
+        return self._past
+
     def _assert(
         self, asserted: Mapping[Belief, Assertion], change: Change, cause: Assertion
     ) -> dict[Belief, Assertion]:
@@ -198,10 +276,9 @@ class InferenceEngine:
         if network is None:
             network = compile_domain(self.domain, self.evaluator.functions).network(self._budget)
         changes = network.update_snapshot(percepts, given)
-        self._network = network
-        supports = BeliefSupports(
-            network, self.closure, self._order, given, percepts, self.lineages, changes
-        )
+        self._network, self._past = network, None
+        self._causes.note(cycle, network.cycle, given, network.first_cycle)
+        supports = BeliefSupports(network, self._order, given, percepts, changes)
         return BeliefState(cycle, percepts, supports, hierarchy, notes, self.lineages)
 
     def _imagine(
@@ -226,6 +303,16 @@ def _given(
     for belief, link in hierarchy.beliefs():
         given[belief] = (Assertion(link.action, link.cycle),)
     return given
+
+
+def _hierarchy(given: Mapping[Belief, tuple[Support, ...]]) -> Hierarchy:
+    """Give the attachments among the beliefs that rest on actions."""
+    links: dict[Value, Link] = {}
+    for belief, (cause, *_) in given.items():
+        if belief.predicate == ATTACHED and isinstance(cause, Assertion):
+            child, parent = belief.args
+            links[child] = Link(parent, cause.action, cause.cycle)
+    return Hierarchy(links)
 
 
 def _checked(percepts: Iterable[Percept], lineages: Lineages) -> tuple[Percept, ...]:

@@ -19,7 +19,10 @@ from icarus_lite.inference.explaining.grounds import well_founded
 from icarus_lite.inference.explaining.reasons import because
 from icarus_lite.inference.supports import Assertion, Derivation, Support
 from icarus_lite.language.syntax import Atom
-from icarus_lite.symbols import Action, Belief, Percept, Value
+from icarus_lite.symbols import Action, Belief, Percept
+
+_PERIODS_TOLD = 5
+"""Of how many periods in which it was held a belief's explanation tells as text."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,8 +126,11 @@ class Explanation:
             for other in each.alternatives:
                 parts += [(below, "or else:"), (below + "  ", other)]
             if len(each.periods) > 1:
-                held = ", ".join(map(str, each.periods))
-                parts.append((below, f"it has been believed {held}"))
+                lately = each.periods[-_PERIODS_TOLD:]
+                earlier = len(each.periods) - len(lately)
+                times = f" {earlier} times before, and" if earlier else ""
+                held = ", ".join(map(str, lately))
+                parts.append((below, f"it has been believed{times} {held}"))
             waiting += reversed(parts)
 
 
@@ -148,15 +154,16 @@ def explain(
     found = proof.of(belief)
     others: tuple[Explanation, ...] = ()
     if alternatives and found.support is not None:
-        others = tuple(_others(belief, state, proof))
+        others = tuple(_others(found, state, proof))
     periods = () if chronicle is None else chronicle.periods(belief)
     if not others and not periods:
         return found
     return Explanation(belief, state.cycle, found.support, found.premises, others, periods)
 
 
-def _others(belief: Belief, state: BeliefState, proof: _Proof) -> Iterator[Explanation]:
-    supports = [each for each in state.supports.get(belief, ()) if each != proof.support(belief)]
+def _others(found: Explanation, state: BeliefState, proof: _Proof) -> Iterator[Explanation]:
+    belief = found.belief
+    supports = [each for each in state.supports.get(belief, ()) if each != found.support]
     premises = [
         premise
         for support in supports
@@ -184,57 +191,67 @@ class _Proof:
     def __init__(self, state: BeliefState, choices: Mapping[Belief, Support] | None = None) -> None:
         self._state = state
         self._choices = choices
+        self._reason = state.reasons()
         self._done: dict[Belief, Explanation] = {}
-        self._percepts: dict[tuple[str, Value], Percept] | None = None
 
     def of(self, belief: Belief) -> Explanation:
         """Explain a belief, and before it all that it rests on, without recursion."""
-        done, waiting = self._done, [belief]
-        begun: dict[Belief, Support | Percept | None] = {}
-        while waiting:
-            each = waiting[-1]
-            if each in done:
-                waiting.pop()
-                continue
-            again = each in begun
-            if not again:
-                begun[each] = self.support(each)
-            support = begun[each]
-            premises = support.matched if isinstance(support, Derivation) else ()
-            missing = [premise for premise in premises if premise not in done]
-            if not missing:
-                waiting.pop()
-                below = tuple([done[premise] for premise in premises])
-                done[each] = Explanation(each, self._state.cycle, support, below)
-            elif again:  # what it rests on has come back to it
-                self._choices = well_founded([belief], self._state.supports)
-                waiting, begun = [belief], {}
+        done, cycle = self._done, self._state.cycle
+        found = done.get(belief)
+        if found is not None:
+            return found
+        open_: list[_Open] = [_Open(belief, self.reason(belief))]
+        begun = {belief}
+        while True:
+            last = open_[-1]
+            for premise in last.waiting:
+                below = done.get(premise)
+                if below is None:
+                    if premise in begun:  # what it rests on has come back to it
+                        self._choices = well_founded([belief], self._state.supports)
+                        return self.of(belief)
+                    reason = self.reason(premise)
+                    if isinstance(reason, Derivation):
+                        begun.add(premise)
+                        open_.append(_Open(premise, reason))
+                        break
+                    below = done[premise] = Explanation(premise, cycle, reason)
+                last.below.append(below)
             else:
-                waiting += reversed(missing)
-        return done[belief]
+                open_.pop()
+                found = Explanation(last.belief, cycle, last.reason, tuple(last.below))
+                done[last.belief] = found
+                if not open_:
+                    return found
+                begun.discard(last.belief)
+                open_[-1].below.append(found)
 
     def is_perceived(self, belief: Belief) -> bool:
         """Tell whether a belief is a percept as a fact."""
-        return self._percept(belief) is not None
+        return self._state.percept(belief) is not None
 
-    def support(self, belief: Belief) -> Support | Percept | None:
-        """Give the support to follow; None for what is not believed."""
-        if self._choices is not None:
-            return self._choices.get(belief) or self._percept(belief)
-        supports = self._state.supports.get(belief)
-        return supports[0] if supports else self._percept(belief)
+    def reason(self, belief: Belief) -> Support | Percept | None:
+        """Give the support to follow; the percept that a fact is; None for what is not believed."""
+        if self._choices is None:
+            return self._reason(belief)
+        return self._choices.get(belief) or self._state.percept(belief)
 
-    def _percept(self, belief: Belief) -> Percept | None:
-        """Give the percept that a fact stands for: of that type, or of one that is a kind of it."""
-        if self._percepts is None:
-            self._percepts = {(each.type, each.name): each for each in self._state.percepts}
-        if len(belief.args) != 1:
-            return None
-        name = belief.args[0]
-        found = self._percepts.get((belief.predicate, name))
-        if found is not None:
-            return found
-        for kind, lineage in self._state.lineages.items():
-            if belief.predicate in lineage and (kind, name) in self._percepts:
-                return self._percepts[kind, name]
-        return None
+
+class _Open:
+    """A belief whose premises are being explained.
+
+    Args:
+        belief: The belief.
+        reason: Why it is held.
+
+    Attributes:
+        waiting: What is still to be explained of what it rests on.
+        below: The explanations that are there.
+    """
+
+    __slots__ = ("belief", "below", "reason", "waiting")
+
+    def __init__(self, belief: Belief, reason: Support | Percept | None) -> None:
+        self.belief, self.reason = belief, reason
+        self.waiting = iter(reason.matched if isinstance(reason, Derivation) else ())
+        self.below: list[Explanation] = []

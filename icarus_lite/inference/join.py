@@ -20,6 +20,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from operator import itemgetter
+from typing import TypeAlias
 
 from icarus_lite.inference.expressions import Compiled, compile_test, conjoin
 from icarus_lite.inference.facts import FactStore
@@ -100,6 +101,10 @@ class Step:
         return iter(found)
 
 
+Tick: TypeAlias = Callable[[], None]
+"""Looks at the clock; raises an error when the time is over."""
+
+
 @dataclass(frozen=True, slots=True)
 class Plan:
     """A compiled conjunction.
@@ -121,7 +126,7 @@ class Plan:
     places: tuple[int, ...]
 
     def run(
-        self, facts: FactStore, given: Row = (), since: int = 0
+        self, facts: FactStore, given: Row = (), since: int = 0, tick: Tick | None = None
     ) -> Iterator[tuple[Row, tuple[Entry, ...]]]:
         """Give each match: its row, and the facts that met the conditions, as they are joined.
 
@@ -129,6 +134,7 @@ class Plan:
             facts: The facts to join.
             given: The values of the variables that are bound beforehand.
             since: What is old: the facts with smaller numbers.
+            tick: Is called now and then, to look at the clock.
 
         Raises:
             InferenceError: a test cannot be evaluated.
@@ -137,18 +143,20 @@ class Plan:
         if self.before is not None and not self.before(row):
             return
         if self.steps:
-            yield from self._join(facts, row, since)
+            yield from self._join(facts, row, since, tick)
         elif not self._is_denied(facts, row):
             yield row, ()
 
     def _join(
-        self, facts: FactStore, row: Row, since: int
+        self, facts: FactStore, row: Row, since: int, tick: Tick | None
     ) -> Iterator[tuple[Row, tuple[Entry, ...]]]:
         steps, last = self.steps, len(self.steps) - 1
         sources = [steps[0].lookup.source(facts)]
         pending = [steps[0].entries(sources[0], row, since)]
         rows, found = [row], list[Entry]()
         while pending:
+            if tick is not None:
+                tick()
             depth = len(pending) - 1
             base, test = rows[depth], steps[depth].test
             for entry in pending[depth]:

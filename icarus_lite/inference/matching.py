@@ -17,6 +17,9 @@ Functions: TypeAlias = Mapping[str, Callable[..., Value | bool]]
 """Python predicates registered by name, beside the built-in functions of `:tests`."""
 
 
+_MATCHERS_KEPT = 512
+
+
 @dataclass(frozen=True, slots=True)
 class Evaluator:
     """Evaluates the expressions of one domain.
@@ -28,10 +31,25 @@ class Evaluator:
 
     functions: Functions = field(default_factory=dict)
     path: str = ""
+    _matchers: dict[tuple[object, ...], Matcher] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
 
     def __call__(self, expression: Expression, bindings: Bindings) -> Value | bool:
         """Give an expression's value. Raises InferenceError, with the place, if it has none."""
         return evaluate(expression, bindings, self.functions, path=self.path)
+
+    def matcher(
+        self, conditions: Sequence[Condition], tests: Sequence[Call] = (), bound: Sequence[str] = ()
+    ) -> Matcher:
+        """Give a matcher; for what was asked for lately, the one that is compiled already."""
+        key = (*conditions, None, *tests, None, *bound)
+        found = self._matchers.get(key)
+        if found is None:
+            if len(self._matchers) >= _MATCHERS_KEPT:
+                self._matchers.clear()
+            found = self._matchers[key] = Matcher(conditions, tests, bound, self)
+        return found
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from icarus_lite.errors import InferenceError
 from icarus_lite.inference.expressions import compile_bind
 from icarus_lite.inference.facts import FactStore
-from icarus_lite.inference.join import Plan
+from icarus_lite.inference.join import Plan, Tick
 from icarus_lite.inference.matching import Evaluator, Matcher
 from icarus_lite.inference.supports import Derivation, bind_pattern
 from icarus_lite.inference.views import Entry, Row, row_getter
@@ -41,17 +41,30 @@ class Rule:
             if atom.predicate in growing
         )
 
-    def all(self, facts: FactStore) -> Iterator[tuple[Belief, Derivation]]:
+    def all(
+        self, facts: FactStore, tick: Tick | None = None
+    ) -> Iterator[tuple[Belief, Derivation]]:
         """Give everything that follows, in the order of the facts, the first condition slowest.
+
+        Args:
+            facts: What to join.
+            tick: Is called now and then, to look at the clock.
 
         Raises:
             InferenceError: a test or a bind cannot be evaluated.
         """
-        for row, entries in self._plan.run(facts):
+        for row, entries in self._plan.run(facts, tick=tick):
             yield self._head.conclude(row, entries)
 
-    def new(self, facts: FactStore, since: int) -> Iterator[tuple[Belief, Derivation]]:
+    def new(
+        self, facts: FactStore, since: int, tick: Tick | None = None
+    ) -> Iterator[tuple[Belief, Derivation]]:
         """Give what follows and rests on a fact numbered `since` or higher, in the same order.
+
+        Args:
+            facts: What to join.
+            since: What is old: the facts with smaller numbers.
+            tick: Is called now and then, to look at the clock.
 
         Raises:
             InferenceError: a test or a bind cannot be evaluated.
@@ -59,7 +72,7 @@ class Rule:
         found = [
             tuple([entries[place] for place in plan.places])
             for plan in self._updates
-            for _, entries in plan.run(facts, since=since)
+            for _, entries in plan.run(facts, since=since, tick=tick)
         ]
         found.sort(key=_numbers)  # no two matches rest on the same facts
         for entries in found:

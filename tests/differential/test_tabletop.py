@@ -11,10 +11,10 @@ from tabletop.engines import ClingoEngine, ClipsEngine, Engine, NetworkEngine, S
 from tabletop.engines.network_engine import RULES, SnapshotEngine, compiled_rules
 from tabletop.oracle import PREDICATES, Facts, difference, facts, truth
 from tabletop.scene import EPISODE, TYPES, Mode, State, Verb, make_workload, moved_count
-from tabletop.whys import proof, proof_times
+from tabletop.whys import measure_whys, section
 
-from icarus_lite.inference import Derivation
-from icarus_lite.language import diagnose_file
+from icarus_lite.inference import Derivation, InferenceEngine, Memory, explain
+from icarus_lite.language import diagnose_file, load_domain
 
 _COMPILED = compiled_rules()
 
@@ -168,18 +168,37 @@ def test_the_network_is_right_with_many_things(mode: Mode) -> None:
     assert engine.facts() == facts(before)
 
 
+@pytest.mark.parametrize("mode", Mode)
+def test_what_is_measured_of_why_is_whole_proofs(mode: Mode) -> None:
+    workload = make_workload(15, mode, frames=40)
+    whys = measure_whys(workload)
+    assert len(whys.nodes) == len(whys.now) > 80
+    assert len(whys.then) > 80
+    assert max(whys.nodes) > 5
+    assert min(*whys.now, *whys.then, whys.back) > 0
+    lines = list(section([(15, str(mode), whys)]))
+    assert len({line.count("|") for line in lines[2:5]}) == 1
+    assert f"| 15 | {mode} | {len(whys.now)} |" in lines[4]
+
+
 def test_proofs_go_down_to_what_is_given() -> None:
-    workload = make_workload(15, Mode.TWO)
-    engine = NetworkEngine(_COMPILED, workload.base, workload.count)
-    engine.begin(workload.start)
-    times = list(proof_times(engine.network))
-    assert len(times) > 10
-    assert max(each.nodes for each in times) > 5
-    for name in ("candidate", "connected", "graspable"):
-        for belief in engine.network.facts(name):
-            given = [each for each, why in proof(engine.network, belief).items() if why is None]
-            assert {each.predicate for each in given} <= {"obj", "base", "fixed", "holding"}
-            assert isinstance(proof(engine.network, belief)[belief], Derivation)
+    workload = make_workload(15, Mode.TWO, frames=30)
+    telling = NetworkEngine(_COMPILED, workload.base, workload.count)
+    engine, memory = InferenceEngine(load_domain(RULES)), Memory()
+    for state in workload.states():
+        memory = engine.step(memory, telling.percepts(state), [])
+    beliefs = [each for name in PREDICATES for each in memory.state.supports.of(name)]
+    assert len({each.predicate for each in beliefs}) > 10
+    for belief in beliefs:
+        pending = [explain(belief, memory.state)]
+        while pending:
+            each = pending.pop()
+            pending += each.premises
+            derived = isinstance(each.support, Derivation)
+            assert derived == (each.belief.predicate in PREDICATES)
+            assert derived or each.belief.predicate in {"obj", "base"}
+            if derived:
+                assert [below.belief for below in each.premises] == list(each.support.matched)
 
 
 def test_the_oracle_notices_a_single_fact() -> None:

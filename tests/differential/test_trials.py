@@ -12,7 +12,7 @@ from dataclasses import replace
 import pytest
 from engine_trials import trial as trials
 from engine_trials.clips_oracle import clips_failure
-from engine_trials.histories import worlds
+from engine_trials.histories import Change, World, worlds
 from engine_trials.proofs import circle, faults
 from engine_trials.scratch import Scratch
 from engine_trials.shrinking import shrunk
@@ -47,6 +47,49 @@ def test_all_agree_on_a_mass_of_objects(seed: int) -> None:
     trial = draw_trial(seed, cycles=5, flavour=Flavour.MASS)
     assert len(trial.history[0].percepts) > 60
     assert (wrong := told(trial)) is None, wrong
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_all_agree_on_a_scene(seed: int) -> None:
+    assert (wrong := told(draw_trial(seed, cycles=6, flavour=Flavour.SCENE))) is None, wrong
+
+
+def objects(there: Change | World) -> set[str]:
+    return {each.name for each in there.percepts if each.type == "obj"}
+
+
+def test_scenes_have_what_they_are_for() -> None:
+    met: Counter[str] = Counter()
+    sizes = []
+    for seed in range(40):
+        trial = draw_trial(seed, cycles=12, flavour=Flavour.SCENE)
+        sizes.append(len(trial.vocabulary.symbols))
+        heads = {clause.head.predicate for clause in trial.clauses}
+        columns = [
+            tuple(atom.atom.attributes for atom in clause.elements[:2])
+            for clause in trial.clauses
+            if len(clause.head.args) == 2 and clause.elements[0].atom.attributes and clause.tests
+        ]
+        met["relations that share their columns"] += len(set(columns)) < len(columns) > 1
+        met["relations over some columns"] += len(columns) > 1
+        met["chains of relations and flags"] += any(
+            {len(c.atom.args) for c in clause.elements if c.atom.predicate in heads} == {1, 2}
+            for clause in trial.clauses
+        )
+        met["chains that rest on a not"] += any(
+            c.negated and c.atom.predicate in heads
+            for clause in trial.clauses
+            for c in clause.elements
+        )
+        met["closures"] += bool(recursive_concepts(trial.clauses))
+        met["all of them moving"] += any(
+            not change.gone and len(change.percepts) > 4 and objects(change) == objects(world)
+            for change, world in zip(trial.history[1:], worlds(trial.history), strict=False)
+        )
+    assert min(sizes) == 2
+    assert max(sizes) > 50
+    assert len(met) == 6
+    assert min(met.values()) >= 5, met
 
 
 def test_clips_agrees() -> None:
@@ -115,12 +158,13 @@ def test_a_network_with_a_fault_is_caught_and_the_trial_made_small(
     monkeypatch.setattr(
         Network, "update", lambda self, delta: update(self, replace(delta, withdrawn=()))
     )
-    seed = next(s for s in range(100) if failure_of(draw_trial(s, cycles=6)) is not None)
-    trial = draw_trial(seed, cycles=6)
-    small, failure = shrunk(trial, failure_of(trial))
+    trials_ = (draw_trial(seed, cycles=6) for seed in range(100))
+    found = ((trial, failure_of(trial)) for trial in trials_)
+    trial, failure = next((t, f) for t, f in found if f is not None and "network" in f.kind)
+    small, failure = shrunk(trial, failure)
     assert "network" in failure.kind
     assert len(small.clauses) == 1
-    assert len(small.history) <= 2
+    assert len(small.history) <= 3
     assert sum(len(change.asserted) for change in small.history) <= 2
     text = report(small, failure)
     assert small.text() in text

@@ -54,10 +54,14 @@ class NetworkEngine:
 
     def begin(self, state: State) -> None:
         """Give the network everything as new."""
-        percepts = [self._base, *(self._percept(thing) for thing in state.things)]
+        percepts = self.percepts(state)
         if self._idle:
             percepts += [self._percept(thing, "obj-idle") for thing in state.things]
         self.changes = self.network.update(Delta(tuple(percepts), asserted=self._given(state)))
+
+    def percepts(self, state: State) -> list[Percept]:
+        """Give all that is perceived, idle things left out."""
+        return [self._base, *(self._percept(thing) for thing in state.things)]
 
     def prepare(self, frame: Frame, state: State) -> Callable[[], None]:  # noqa: ARG002 - as `Engine`
         """Give what tells the network the places of what has moved, and the actions."""
@@ -121,7 +125,7 @@ class SnapshotEngine(NetworkEngine):
 
     def prepare(self, frame: Frame, state: State) -> Callable[[], None]:  # noqa: ARG002 - as `Engine`
         """Give what hands over a whole picture; making the picture is the camera's business."""
-        percepts = [self._base, *(self._percept(thing) for thing in state.things)]
+        percepts = self.percepts(state)
         asserted = self._given(state)
 
         def step() -> None:

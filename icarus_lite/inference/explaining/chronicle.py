@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
@@ -33,12 +34,28 @@ class Period:
 
 
 class Chronicle:
-    """A record of net changes, cycle by cycle. It grows with what changes, not with what holds."""
+    """A record of net changes, cycle by cycle. It grows with what changes, not with what holds.
 
-    __slots__ = ("_actions", "_gone", "_last_seen", "_periods", "_present", "cycle")
+    Args:
+        changes_kept: How many things that are over to keep, the oldest are forgotten: beliefs that
+            ended, objects that vanished, actions. None keeps all.
 
-    def __init__(self) -> None:
+    Attributes:
+        first: What was over before this cycle is forgotten.
+        cycle: The last cycle recorded.
+    """
+
+    __slots__ = (
+        "_actions", "_gone", "_last_seen", "_most", "_over", "_periods", "_present", "_size",
+        "cycle", "first",
+    )  # fmt: skip
+
+    def __init__(self, changes_kept: int | None = None) -> None:
         self.cycle = -1
+        self.first = 0
+        self._most = changes_kept
+        self._over: deque[tuple[int, tuple[Belief, ...], int]] = deque()
+        self._size = 0
         self._periods: dict[str, dict[Belief, list[Period]]] = {}
         self._actions: dict[int, tuple[Outcome, ...]] = {}
         self._present: frozenset[str] = frozenset()
@@ -62,7 +79,8 @@ class Chronicle:
             outcomes: What became of actions since the cycle before.
             present: The names of all objects perceived.
         """
-        for belief in removed:
+        ended = tuple(removed)
+        for belief in ended:
             held = self._periods.setdefault(belief.predicate, {})
             periods = held.setdefault(belief, [Period(self.cycle)])
             periods[-1] = Period(periods[-1].first, self.cycle)
@@ -78,10 +96,34 @@ class Chronicle:
             self._last_seen.update(dict.fromkeys(gone, self.cycle))
         self._present = now
         self.cycle = cycle
+        size = len(ended) + len(outcomes) + len(gone)
+        if size:
+            self._over.append((cycle, ended, size))
+            self._size += size
+            while self._most is not None and self._size > self._most and len(self._over) > 1:
+                self._forget(*self._over.popleft())
+
+    def _forget(self, cycle: int, ended: tuple[Belief, ...], size: int) -> None:
+        """Forget what was over in a cycle, the oldest on record."""
+        for belief in ended:
+            held = self._periods[belief.predicate]
+            del held[belief][0]
+            if not held[belief]:
+                del held[belief]
+        self._actions.pop(cycle, None)
+        self._gone.pop(cycle, None)
+        self._size -= size
+        self.first = cycle + 1
 
     def periods(self, belief: Belief) -> tuple[Period, ...]:
         """Give the periods in which a belief was held, oldest first."""
         return tuple(self._periods.get(belief.predicate, {}).get(belief, ()))
+
+    def held(self, *predicates: str) -> Iterator[tuple[Belief, tuple[Period, ...]]]:
+        """Give each belief on record with its periods; of some predicates, or of all."""
+        for predicate in predicates or tuple(self._periods):
+            for belief, periods in self._periods.get(predicate, {}).items():
+                yield belief, tuple(periods)
 
     def matching(self, pattern: Atom) -> Iterator[tuple[Belief, tuple[Period, ...]]]:
         """Give each belief ever held that matches a pattern, in the order of first being held."""

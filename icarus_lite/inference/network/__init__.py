@@ -9,11 +9,20 @@ objects lie in columns (`tables`), are seen by patterns and paired by numeric ke
 `pair_stores`, `kernels`); the generated functions carry the changes on, concept by concept
 (`running`), those with attributes by way of `attributed` and `recomputed`. A budget is watched
 (`watch`), net changes are logged (`history`), and why something is believed is found when asked
-(`proofs`).
+(`asking`, `proofs`, `ways`).
 """
 
 from icarus_lite.inference.network.changes import Budget, Changes, Delta
 from icarus_lite.inference.network.compiled import CompiledDomain, compile_domain
+from icarus_lite.inference.network.history import ForgottenError
 from icarus_lite.inference.network.network import Network
 
-__all__ = ["Budget", "Changes", "CompiledDomain", "Delta", "Network", "compile_domain"]
+__all__ = [
+    "Budget",
+    "Changes",
+    "CompiledDomain",
+    "Delta",
+    "ForgottenError",
+    "Network",
+    "compile_domain",
+]

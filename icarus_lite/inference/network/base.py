@@ -5,22 +5,27 @@ Every write is noted with what was there before, until the cycle has succeeded.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from math import isfinite, isnan
 from typing import Any, NamedTuple, TypeAlias
 
 from icarus_lite.errors import FrameError
 from icarus_lite.inference.facts import Lineages, check_values
 from icarus_lite.inference.network.changes import Delta
-from icarus_lite.inference.network.history import Kind, key_of
+from icarus_lite.inference.network.history import Kind, Writes, key_of
+from icarus_lite.inference.network.kernels.columns import PLAIN
 from icarus_lite.symbols import Belief, Percept, Value, is_number
 
 Entry: TypeAlias = tuple[str, int, Any]
 """A fact that may be given: its predicate, the number of its arguments, and its key."""
 
 _NUMERIC = {int, float}
+_WHOLE = {int}
 _ABSENT: Any = object()
+
+_Values: TypeAlias = Mapping[str, Sequence[Any]]
+"""For each of some attributes one value an object."""
 
 
 class Base:
@@ -35,7 +40,16 @@ class Base:
         touched: The facts that the cycle has touched so far.
     """
 
-    __slots__ = ("_before", "_journal", "_lineages", "_owners", "asserted", "percepts", "touched")
+    __slots__ = (
+        "_before",
+        "_journal",
+        "_last",
+        "_lineages",
+        "_owners",
+        "asserted",
+        "percepts",
+        "touched",
+    )
 
     def __init__(self, lineages: Lineages) -> None:
         self._lineages = lineages
@@ -43,8 +57,11 @@ class Base:
         self.asserted: dict[Kind, dict[Any, Belief]] = {}
         self.touched: dict[Entry, None] = {}
         self._owners: dict[tuple[str, Value], str] = {}
-        self._journal: list[_Entry | _Column] = []
+        self._journal: list[_Entry | _Columns] = []
         self._before: dict[tuple[Kind, Any], Belief | None] = {}
+        # Of the last move of each type, as long as nothing else has been written: the names, the
+        # attributes of these percepts, and the values that were set.
+        self._last: dict[str, tuple[list[str], list[dict[str, Value]], _Values]] = {}
 
     def copy(self) -> Base:
         """Give the same again, to go its own way."""
@@ -69,6 +86,8 @@ class Base:
         Raises:
             FrameError: a percept or assertion is not what it may be; `undo` what was written.
         """
+        if delta.gone or delta.percepts:
+            self._last.clear()
         for type_, name in delta.gone:
             if name in self.percepts.get(type_, ()):
                 self._write(self.percepts[type_], name, _ABSENT)
@@ -119,16 +138,48 @@ class Base:
 
     def move(
         self, type_: str, names: Sequence[str], columns: Mapping[str, Sequence[Value]]
-    ) -> dict[str, Sequence[Value]]:
+    ) -> tuple[dict[str, tuple[Value, ...]], bool]:
         """Take in new values of some attributes of percepts that are there.
 
         Returns:
-            The values as lists.
+            The values, and whether all of them are plain numbers: see `PLAIN`.
 
         Raises:
             FrameError: an object is not known or named twice, a value is missing or not finite.
         """
-        lists = {a: _checked(a, names, values) for a, values in columns.items()}
+        count = len(names)
+        every: list[Any] = []
+        lists = {}
+        for attribute, given in columns.items():
+            values = given if type(given) is tuple else _as_tuple(given)
+            if len(values) != count:
+                raise FrameError(f"{count} objects, but {len(values)} values of {attribute}")
+            lists[attribute] = values
+            every += values
+        plain = _are_plain(every)
+        if not plain:
+            for attribute, values in lists.items():
+                _check_values(attribute, names, values)
+        last = self._last.get(type_)
+        if last is not None and last[0] == names:  # the same objects move again, as they mostly do
+            _, records, old = last
+        else:
+            records, old = self._records(type_, names), {}
+        if old.keys() != lists.keys():
+            old = {a: [record.get(a, _ABSENT) for record in records] for a in lists}
+        for attribute, values in lists.items():
+            for record, value in zip(records, values):  # noqa: B905 # strict costs a tenth of it
+                record[attribute] = value
+        self._journal.append(_Columns(records, old))
+        self._last[type_] = [*names], records, lists
+        return lists, plain
+
+    def _records(self, type_: str, names: Sequence[str]) -> list[dict[str, Value]]:
+        """Give the attributes of some percepts.
+
+        Raises:
+            FrameError: one is not there, or named twice.
+        """
         known = self.percepts.get(type_, {})
         try:
             records = [known[name] for name in names]
@@ -137,9 +188,7 @@ class Base:
             raise FrameError(message) from None
         if len({*map(id, records)}) != len(records):
             raise FrameError(f"an object of type {type_} is moved twice in one cycle")
-        for attribute, values in lists.items():
-            self._journal.append(_Column(records, attribute, _exchange(records, attribute, values)))
-        return lists
+        return records
 
     def touch(self, type_: str, names: Iterable[str]) -> None:
         """Note that percepts have changed, under every type they belong to."""
@@ -154,23 +203,39 @@ class Base:
         else:
             where[key] = value
 
-    def settle(self) -> None:
-        """The cycle has succeeded: what was before is forgotten."""
-        self._journal.clear()
+    def settle(self) -> Writes:
+        """The cycle has succeeded: hand over what it has written over."""
+        written, self._journal = self._journal, []
         self.touched.clear()
         self._before.clear()
+        return written
 
     def undo(self) -> None:
         """Take back all that was written in this cycle."""
+        self._last.clear()
         _replay(self._journal)
         self.settle()
 
     @contextmanager
     def undone(self) -> Iterator[None]:
         """Be, for a while, what it was before this cycle."""
+        self._last.clear()
         again = _replay(self._journal)
         yield
         _replay(again)
+
+    def before(self, cycles: Sequence[Writes]) -> Base:
+        """Give a base of its own that is what this one was before some cycles.
+
+        Args:
+            cycles: What each of the last cycles has written over, the last one last.
+        """
+        self._last.clear()
+        again = [_replay(written) for written in reversed(cycles)]
+        found = self.copy()
+        for written in reversed(again):
+            _replay(written)
+        return found
 
     # -- reading -------------------------------------------------------------------------------
 
@@ -179,6 +244,11 @@ class Base:
         predicate, arity, key = entry
         owner = self._owners.get((predicate, key)) if arity == 1 else None
         return None if owner is None else self.percepts[owner][key]
+
+    def percept(self, type_: str, name: Value) -> Percept | None:
+        """Give a percept by one of the types it belongs to, or None if there is none."""
+        owner = self._owners.get((type_, name))
+        return None if owner is None else Percept(owner, str(name), self.percepts[owner][name])
 
     def given(self, entry: Entry) -> Mapping[str, Value] | None:
         """Give the attributes of an assertion, or None if there is none."""
@@ -259,6 +329,11 @@ class _Entry(NamedTuple):
     key: Any
     old: Any
 
+    @property
+    def size(self) -> int:
+        """How much it is, counted in changes of one value."""
+        return 1 + len(self.old) if type(self.old) is dict else 1
+
     def undone(self) -> _Entry:
         """Put it back; give what puts it back again."""
         again = _Entry(self.where, self.key, self.where.get(self.key, _ABSENT))
@@ -269,17 +344,22 @@ class _Entry(NamedTuple):
         return again
 
 
-class _Column(NamedTuple):
-    """One attribute of many objects, and what it was."""
+class _Columns(NamedTuple):
+    """Some attributes of many objects, and what they were."""
 
     records: Sequence[dict[str, Value]]
-    attribute: str
-    old: Sequence[Any]
+    old: _Values
 
-    def undone(self) -> _Column:
+    @property
+    def size(self) -> int:
+        """How much it is, counted in changes of one value."""
+        return len(self.old) * len(self.records)
+
+    def undone(self) -> _Columns:
         """Put it back; give what puts it back again."""
-        now = _exchange(self.records, self.attribute, self.old)
-        return _Column(self.records, self.attribute, now)
+        old = self.old
+        now = {attribute: _exchange(self.records, attribute, old[attribute]) for attribute in old}
+        return _Columns(self.records, now)
 
 
 def _exchange(
@@ -296,27 +376,43 @@ def _exchange(
     return old
 
 
-def _replay(journal: Sequence[_Entry | _Column]) -> list[_Entry | _Column]:
+def _replay(journal: Sequence[_Entry | _Columns]) -> list[_Entry | _Columns]:
     """Put everything back, the last write first; give the journal that puts it back again."""
     return [each.undone() for each in reversed(journal)]
 
 
-def _checked(attribute: str, names: Sequence[str], values: Sequence[Value]) -> Sequence[Value]:
-    """Give the new values of an attribute as a list, once they are seen to be values."""
-    given: Any = values
-    if hasattr(given, "tolist"):  # an array
-        given = given.tolist()
-    if len(given) != len(names):
-        raise FrameError(f"{len(names)} objects, but {len(given)} values of {attribute}")
-    if {*map(type, given)} <= _NUMERIC:
+def _as_tuple(values: Sequence[Value]) -> tuple[Value, ...]:
+    """Give the values of a list or array as a tuple of Python's values."""
+    return tuple(values.tolist() if hasattr(values, "tolist") else values)
+
+
+def _are_plain(values: Sequence[Any]) -> bool:
+    """Tell whether all values are numbers, none of them large: finite at any rate."""
+    types = {*map(type, values)}
+    if types == _WHOLE:
+        return bool(min(values) >= -PLAIN and max(values) <= PLAIN)
+    if not types <= _NUMERIC:
+        return False
+    if sum(map(abs, values)) <= PLAIN:
+        return True
+    # Where one is no number at all, the smallest and the greatest may not tell, but the sum does.
+    return not isnan(sum(values)) and bool(min(values) >= -PLAIN and max(values) <= PLAIN)
+
+
+def _check_values(attribute: str, names: Sequence[str], values: Sequence[Value]) -> None:
+    """See that all values of an attribute are values.
+
+    Raises:
+        FrameError: one is not.
+    """
+    if {*map(type, values)} <= _NUMERIC:
         try:
-            if math.isfinite(sum(given)):
-                return given  # type: ignore[no-any-return] # a sequence of numbers
+            if isfinite(sum(values)):  # type: ignore[arg-type] # numbers
+                return
         except OverflowError:
             pass  # an integer beyond every float, or else a sum of them: looked at one by one
-    for name, value in zip(names, given, strict=True):
+    for name, value in zip(names, values, strict=True):
         _check_value(f"attribute {attribute} of {name}", value)
-    return given  # type: ignore[no-any-return] # a sequence of values
 
 
 def _not_unique(type_: str, name: Value) -> FrameError:

@@ -75,12 +75,15 @@ class Changes:
 
 @dataclass(frozen=True, slots=True)
 class Budget:
-    """What one cycle may cost before it is stopped and taken back.
+    """What one cycle may cost before it is stopped and taken back, and what may be kept of it.
 
     Args:
         facts: How many beliefs one concept may have.
         seconds: How long a cycle may take; None for as long as it needs.
+        changes_kept: How many changes of past cycles are remembered: of beliefs, percepts and
+            assertions, some hundred bytes each. Older ones are forgotten; None keeps all.
     """
 
     facts: int = 5_000_000
     seconds: float | None = 30.0
+    changes_kept: int | None = 200_000

@@ -8,6 +8,8 @@ from icarus_lite.inference.matching import Evaluator, Functions
 from icarus_lite.inference.network.changes import Budget
 from icarus_lite.inference.network.design import Design, design_of, place_of
 from icarus_lite.inference.network.generation.module import Module, generate
+from icarus_lite.inference.network.groups import groups_of
+from icarus_lite.inference.network.kernels import GroupProgram
 from icarus_lite.inference.network.network import Network
 from icarus_lite.inference.network.plans import ClausePlan, plans_of
 from icarus_lite.inference.network.vocabulary import Vocabulary
@@ -16,11 +18,19 @@ from icarus_lite.language.syntax import Domain
 
 @dataclass(frozen=True, slots=True)
 class Compiled:
-    """The network of a domain for some choice of concepts that are given as well."""
+    """The network of a domain for some choice of concepts that are given as well.
+
+    Args:
+        design: Its design.
+        module: The generated module.
+        places: Where each clause stands, with its head.
+        groups: For each percept type the pair rules that are followed together when it moves.
+    """
 
     design: Design
     module: Module
     places: tuple[str, ...]
+    groups: tuple[GroupProgram, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +55,11 @@ class CompiledDomain:
         return self.form(frozenset()).module.source
 
     @property
+    def pair_source(self) -> str:
+        """The generated Python of pair rules that are followed together, for a person to read."""
+        return "\n\n".join(group.source.text for group in self.form(frozenset()).groups)
+
+    @property
     def plans(self) -> tuple[ClausePlan, ...]:
         """How each clause is joined, in the order of the text."""
         form = self.form(frozenset())
@@ -62,15 +77,15 @@ class CompiledDomain:
             places = tuple(
                 f"{place_of(clause, self.domain)}: {clause.head}" for clause in self.domain.concepts
             )
-            self._forms[given] = Compiled(design, generate(design), places)
+            self._forms[given] = Compiled(design, generate(design), places, groups_of(design))
         return self._forms[given]
 
     def network(self, budget: Budget | None = None) -> Network:
         """Give a network that believes nothing yet.
 
         Args:
-            budget: What one cycle may cost; by default five million beliefs a concept and half
-                a minute.
+            budget: What one cycle may cost, by default five million beliefs a concept and half
+                a minute, and how many changes of past cycles to keep.
         """
         return Network(self, budget)
 

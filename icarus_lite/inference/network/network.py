@@ -2,55 +2,48 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from icarus_lite.errors import FrameError, InferenceError
-from icarus_lite.inference.facts import Bindings, match, resolve
+from icarus_lite.inference.network.asking import Asking
 from icarus_lite.inference.network.attributed import ASSERTED, PERCEIVED
 from icarus_lite.inference.network.base import Base, Entry
 from icarus_lite.inference.network.changes import Budget, Changes, Delta
 from icarus_lite.inference.network.events import difference, events_of_given
-from icarus_lite.inference.network.history import Event, History, Kind, belief_of, key_of
+from icarus_lite.inference.network.history import Event, History, Kind
 from icarus_lite.inference.network.parts import Move
-from icarus_lite.inference.network.proofs import Prover
 from icarus_lite.inference.network.running import Running
 from icarus_lite.inference.network.watch import BudgetError, Watch
-from icarus_lite.inference.supports import Derivation
-from icarus_lite.language.syntax import Atom
 from icarus_lite.symbols import Belief, Percept, Value
 
 if TYPE_CHECKING:
     from icarus_lite.inference.network.compiled import CompiledDomain
 
 
-class Network:
+class Network(Asking):
     """The beliefs that follow from percepts and assertions, cycle after cycle.
 
     It is told what has changed and follows; what it costs depends on the change, not on how much
-    is believed. An update that fails leaves everything as it was.
+    is believed. An update that fails leaves everything as it was. What it is asked: see `Asking`.
 
     Args:
         compiled: The compiled domain.
-        budget: What one cycle may cost.
+        budget: What one cycle may cost, and how many changes of past cycles to keep.
     """
 
-    __slots__ = (
-        "_base", "_form", "_history",
-        "_prover", "_running", "_watch", "budget", "compiled", "cycle",
-    )  # fmt: skip
+    __slots__ = ("_form", "_lineages", "_watch", "budget", "compiled", "cycle")
 
     def __init__(self, compiled: CompiledDomain, budget: Budget | None = None) -> None:
         self.compiled = compiled
         self.budget = budget or Budget()
         self.cycle = -1
         self._form: frozenset[str] = frozenset()
+        self._lineages: dict[str, tuple[Sequence[str], bool]] = {}
         places = compiled.form(self._form).places
         self._watch = Watch(self.budget, places)
-        self._history = History()
-        self._base = Base(compiled.form(self._form).design.vocabulary.lineages)
-        self._running = self._new_running()
-        self._prover = Prover(self._running)
+        base = Base(compiled.form(self._form).design.vocabulary.lineages)
+        super().__init__(base, self._new_running(), History(self.budget.changes_kept))
 
     # -- telling it what has changed -----------------------------------------------------------
 
@@ -111,17 +104,24 @@ class Network:
         """
         base = self._base
         try:
-            lists = base.move(type_, names, columns)
+            values, plain = base.move(type_, names, columns)
             if asserted or withdrawn:
                 base.give(asserted, withdrawn)
         except FrameError:
             base.undo()
             raise
-        types = base.lineage(type_)
-        if any(type_ in self._concepts for type_ in types):
+        types, is_plain_type = self._lineages.get(type_) or self._lineage(type_)
+        if not is_plain_type:
             base.touch(type_, names)
             return self._follow()
-        return self._follow((Move(types, names, lists),))
+        return self._follow((Move(types, names, values, plain),))
+
+    def _lineage(self, type_: str) -> tuple[Sequence[str], bool]:
+        """Give all types of a percept, and whether none of them is a concept as well."""
+        types = self._base.lineage(type_)
+        found = types, not any(each in self._concepts for each in types)
+        self._lineages[type_] = found
+        return found
 
     @property
     def _concepts(self) -> Mapping[str, tuple[str, ...]]:
@@ -137,8 +137,7 @@ class Network:
             events = self._go_on(moves)
         if base.touched:
             events += events_of_given(base, self._running.heads)
-        self._history.cycles.append(events)
-        base.settle()
+        self._history.add(events, base.settle())
         self.cycle += 1
         cycle = self.cycle
         return Changes(cycle, lambda: self._changes(cycle))
@@ -250,138 +249,25 @@ class Network:
             for kind in running.heads
         }
 
-    # -- asking --------------------------------------------------------------------------------
+    # -- other networks ------------------------------------------------------------------------
 
-    def holds(self, belief: Belief) -> bool:
-        """Tell whether a belief is held now; percepts are not beliefs."""
-        kind = belief.predicate, len(belief.args)
-        if kind in self._running.heads:
-            return self._running.holds(kind, key_of(belief.args))
-        kind_known = self._base.asserted.get(kind, {})
-        return key_of(belief.args) in kind_known
-
-    def matches(
-        self, pattern: Atom, bindings: Bindings | None = None
-    ) -> Iterator[dict[str, Value]]:
-        """Give the bindings of each percept and belief that matches a pattern.
-
-        Args:
-            pattern: A condition, without its `not`.
-            bindings: What its variables are bound to already.
-        """
-        given = bindings or {}
-        args = tuple(resolve(term, given) for term in pattern.args)
-        candidates: Iterable[Belief]
-        if None not in args:
-            fact = self._running.fact(pattern.predicate, args)  # type: ignore[arg-type] # checked
-            candidates = () if fact is None else (fact,)
-        else:
-            candidates = self._running.facts((pattern.predicate, len(pattern.args)))
-        for fact in candidates:
-            extended = match(pattern, fact, given)
-            if extended is not None:
-                yield extended
-
-    def facts(self, predicate: str) -> Iterator[Belief]:
-        """Give the beliefs of a predicate as they are asked for, in no particular order."""
-        for kind in self._kinds(predicate):
-            if kind in self._running.heads:
-                for key in self._running.keys(kind):
-                    yield belief_of(kind, key, self._running.attributes_of(kind, key))
-            else:
-                yield from self._base.asserted.get(kind, {}).values()
-
-    def like(self, predicate: str, arity: int, known: Mapping[int, Value]) -> Iterator[Belief]:
-        """Give the beliefs that have these values at these places of their arguments.
-
-        Args:
-            predicate: Their predicate; not a percept type.
-            arity: How many arguments they have.
-            known: Some of these, by place from 0.
-        """
-        return self._running.like((predicate, arity), known)
-
-    def count(self, predicate: str) -> int:
-        """Count the beliefs of a predicate."""
-        return sum(
-            self._running.count(kind)
-            if kind in self._running.heads
-            else len(self._base.asserted.get(kind, {}))
-            for kind in self._kinds(predicate)
-        )
-
-    def beliefs(self) -> tuple[Belief, ...]:
-        """Give all beliefs, percepts left out, sorted as they are written."""
-        return tuple(sorted(self._held().values(), key=str))
-
-    def supports(self, belief: Belief) -> tuple[Derivation, ...]:
-        """Give every derivation of a belief, found now: clauses as written, then by values.
-
-        The first one never rests on the belief itself, so that following first derivations
-        always ends at what is given. Empty for what is only asserted, or not believed.
-        """
-        if self._prover.running is not self._running:
-            self._prover = Prover(self._running)
-        return self._prover.derivations(belief)
-
-    def intervals(self, belief: Belief) -> list[tuple[int, int | None]]:
-        """Give each stretch of cycles in which a belief was held.
-
-        Returns:
-            Its first cycle, and the first one after it; None for the one that goes on.
-        """
-        return self._history.intervals(belief, held=self.holds(belief))
-
-    def held_at(self, cycle: int) -> frozenset[Belief]:
-        """Give all that was believed in a cycle.
+    def recall(self, cycle: int) -> Network:
+        """Give a network that stands in an earlier cycle, to be asked as one would have then.
 
         Raises:
-            ValueError: there was no such cycle.
+            ForgottenError: there was no such cycle, or it is no longer on record.
         """
-        if not 0 <= cycle <= self.cycle:
-            raise ValueError(f"there is no cycle {cycle}; the last one is {self.cycle}")
-        held = self._held()
-        self._history.roll_back(held, cycle)
-        return frozenset(held.values())
-
-    def percepts(self) -> tuple[Percept, ...]:
-        """Give what is perceived now."""
-        return tuple(
-            Percept(type_, str(name), attributes)
-            for type_, known in self._base.percepts.items()
-            for name, attributes in known.items()
-        )
-
-    def asserted(self) -> tuple[Belief, ...]:
-        """Give the beliefs that are given now, in the order in which they were asserted."""
-        return tuple(self._base.assertions())
+        base = self._base.before(self._history.writes_after(cycle))
+        return self._twin(cycle, base, self._history.until(cycle))
 
     def copy(self) -> Network:
         """Give a network in the same state that goes its own way, to try out a change."""
+        return self._twin(self.cycle, self._base.copy(), self._history.until(self.cycle))
+
+    def _twin(self, cycle: int, base: Base, history: History) -> Network:
         other = Network(self.compiled, self.budget)
-        other.cycle, other._form = self.cycle, self._form
-        other._history, other._base = self._history.copy(), self._base.copy()
-        if self.cycle >= 0:
+        other.cycle, other._form = cycle, self._form
+        other._history, other._base = history, base
+        if cycle >= 0:
             other._load()
         return other
-
-    def _kinds(self, predicate: str) -> list[Kind]:
-        kinds = dict.fromkeys(kind for kind in self._running.heads if kind[0] == predicate)
-        kinds.update(dict.fromkeys(k for k in self._base.asserted if k[0] == predicate))
-        return list(kinds)
-
-    def _held(self) -> dict[Belief, Belief]:
-        running = self._running
-        held = {}
-        for kind in running.heads:
-            for key in running.keys(kind):
-                belief = belief_of(kind, key, running.attributes_of(kind, key))
-                held[belief] = belief
-        for belief in self._base.assertions():
-            held.setdefault(belief, belief)
-        return held
-
-    def _changes(self, cycle: int) -> tuple[Sequence[Belief], Sequence[Belief], Sequence[Belief]]:
-        if cycle == 0:
-            return tuple(self.held_at(0)), (), ()
-        return self._history.changes(cycle)

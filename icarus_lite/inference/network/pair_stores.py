@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 
-from icarus_lite.inference.network.kernels import PairKernel
+from icarus_lite.inference.network.kernels import Change, PairKernel
+from icarus_lite.inference.network.kernels.matrix import MatrixRelation
 from icarus_lite.inference.network.tables import Objects
 from icarus_lite.symbols import Value
 
@@ -44,7 +45,18 @@ class PairStore:
     def expect_no_strangers(self) -> None:
         """Go back to the fast way: the kernel knows all objects there are."""
         left_places, right_places = self.left.places, self.right.places
-        is_pair = self.relation.holds
+        relation = self.relation
+        is_pair = relation.holds
+        if isinstance(relation, MatrixRelation):
+            # What `relation.holds` would say, without the call: joins ask it all the time.
+            def holds_in_matrix(one: Value, other: Value) -> bool:
+                left, right = left_places.get(one), right_places.get(other)
+                if left is None or right is None:
+                    return False
+                return relation.bits[left * relation.stride + right] == 1
+
+            self.holds = holds_in_matrix
+            return
 
         def holds(one: Value, other: Value) -> bool:
             left = left_places.get(one)
@@ -105,12 +117,16 @@ class PairStore:
         Raises:
             InferenceError: a test cannot be evaluated.
         """
-        added, removed = self.relation.update(changed_left, changed_right)
-        one, other = self.left.columns, self.right.columns
-        self._known_left, self._known_right = one.size, other.size
+        change = self.relation.update(changed_left, changed_right)
+        self._known_left, self._known_right = self.left.columns.size, self.right.columns.size
+        return self.named(change)
+
+    def named(self, change: Change) -> tuple[list[NamedPair], list[NamedPair]]:
+        """Give a change of the relation with the names of the objects."""
+        added, removed = change
         if not added and not removed:
             return _NONE
-        left, right = one.names, other.names
+        left, right = self.left.columns.names, self.right.columns.names
         return (
             [(left[i], right[j]) for i, j in added],
             [(left[i], right[j]) for i, j in removed],

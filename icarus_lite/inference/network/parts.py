@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 from icarus_lite.inference.network.pair_stores import PairStore
 from icarus_lite.symbols import Value
@@ -19,19 +19,20 @@ Functions: TypeAlias = Mapping[str, Callable[..., Any]]
 """The functions of a generated module by name."""
 
 
-@dataclass(frozen=True, slots=True)
-class Move:
+class Move(NamedTuple):
     """Objects of one type of which some attributes have changed.
 
     Args:
         types: The type of the objects and its supertypes.
         names: The objects, all of them there.
         columns: For each attribute that has changed one value an object.
+        plain: Whether all these values are numbers, none of them large: see `PLAIN`.
     """
 
     types: Sequence[str]
     names: Sequence[str]
-    columns: Mapping[str, Sequence[Value]]
+    columns: Mapping[str, tuple[Value, ...]]
+    plain: bool
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
-from icarus_lite.inference.closure import Closure
+from icarus_lite.inference.closure import Closure, Limits
 from icarus_lite.inference.facts import FactStore
 from icarus_lite.inference.network.attributed import Key, Telling
 from icarus_lite.inference.network.history import Kind, key_of
@@ -23,6 +23,7 @@ class Recomputed:
     Args:
         kinds: For each head of the component its number and kind.
         closure: The component's clauses.
+        limits: What deriving from them may cost.
         given: Gives the facts that the clauses read: percepts, beliefs of other concepts, and
             what is given of these concepts; what decides on attributes comes first.
         is_asserted: Tells whether a fact that is given is a belief, and not a percept only.
@@ -39,6 +40,7 @@ class Recomputed:
         "_given",
         "_is_asserted",
         "_kinds",
+        "_limits",
         "_record",
         "_tellings",
         "attributes",
@@ -49,12 +51,13 @@ class Recomputed:
         self,
         kinds: Sequence[tuple[int, Kind]],
         closure: Closure,
+        limits: Limits,
         given: Callable[[], Iterable[Belief]],
         is_asserted: Callable[[Belief], bool],
         tellings: Sequence[Sequence[Telling]],
         record: Callable[[Any], None],
     ) -> None:
-        self._kinds, self._closure, self._given = kinds, closure, given
+        self._kinds, self._closure, self._limits, self._given = kinds, closure, limits, given
         self._is_asserted, self._tellings, self._record = is_asserted, tellings, record
         self.attributes: list[dict[Key, Mapping[str, Value]]] = [{} for _ in kinds]
         self.believed: list[dict[Key, None]] = [{} for _ in kinds]
@@ -106,7 +109,7 @@ class Recomputed:
     ) -> list[tuple[dict[Key, Mapping[str, Value]], dict[Key, None], dict[Key, int]]]:
         """Give for each head its facts with attributes, its beliefs, and the order they came in."""
         store = FactStore(self._given())
-        derived = self._closure.derive(store)
+        derived = self._closure.derive(store, limits=self._limits)
         found = []
         for _, kind in self._kinds:
             facts: dict[Key, Mapping[str, Value]] = {}

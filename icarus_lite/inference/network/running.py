@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import count
 from typing import TYPE_CHECKING, Any
 
-from icarus_lite.inference.closure import Closure
+from icarus_lite.inference.closure import Closure, Limits
 from icarus_lite.inference.expressions import compile_bind, compile_test
 from icarus_lite.inference.network.attributed import ASSERTED, Attributes, Telling
 from icarus_lite.inference.network.contents import Contents
@@ -44,7 +44,7 @@ class Running(Contents):
         super().__init__(compiled.design)
         self.compiled = compiled
         self._events: list[tuple[Any, Sequence[Any], Sequence[Any], Sequence[Any]]] = []
-        self._scene = Scene(compiled.design, compiled.module)
+        self._scene = Scene(compiled.design, compiled.module, compiled.groups)
         self.objects = self._scene.objects
         self.parts = self._parts(watch)
         self.functions: Functions = compiled.module.connect(self.parts)
@@ -133,9 +133,15 @@ class Running(Contents):
             known = self.given.get((fact.predicate, len(fact.args)), {})
             return ASSERTED in known.get(key_of(fact.args), {})
 
+        parts = self.parts
         made = Recomputed(
             [(head.number, (head.facts.predicate, head.facts.arity)) for head in heads],
             Closure(clauses, design.vocabulary.evaluator),
+            Limits(
+                parts.most,
+                lambda clause: parts.tick(bodies[clause].number),
+                lambda clause: parts.too_many(bodies[clause].number),
+            ),
             given,
             is_asserted,
             [[Telling(*each) for each in of_head] for of_head in tellings],
@@ -199,6 +205,10 @@ class Running(Contents):
         self._scene.load_pairs(self._check_size)
         self.functions["load"]()
         self._events.clear()
+
+    def follow_alone(self) -> None:
+        """Let pair rules follow each by itself from now on, so that they can be told apart."""
+        self._scene.follow_alone()
 
     def _check_size(self, size: int, clause: int) -> None:
         if size > self.parts.most:

@@ -8,13 +8,14 @@ object half in its old place and half in its new one.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 from icarus_lite.inference.network.design import Design
 from icarus_lite.inference.network.generation.module import Module, is_filtered
-from icarus_lite.inference.network.kernels import Columns
+from icarus_lite.inference.network.kernels import Columns, GroupProgram
 from icarus_lite.inference.network.pair_stores import PairStore
+from icarus_lite.inference.network.pairing import Pairing
 from icarus_lite.inference.network.parts import Functions, Known, Move, Show
 from icarus_lite.inference.network.relations import Pairs, View
 from icarus_lite.inference.network.tables import Objects, Table
@@ -50,45 +51,41 @@ class _Side:
 
 
 @dataclass(frozen=True, slots=True)
-class _Kernel:
-    """Pairs with whom to tell; `number` that of the concept whose beliefs they are, if any."""
-
-    store: PairStore
-    show: Callable[[Any, Any], None]
-    withdraw: Callable[[Any, Any], None]
-    number: int | None
-    clause: int
-    left: int
-    right: int
-
-
-@dataclass(frozen=True, slots=True)
 class _Movement:
     """What depends on some attributes of a type: which views, sides and columns to look at."""
 
     table: Table
+    identity: int
+    attributes: tuple[str, ...]
     views: tuple[_Seen, ...]
     sides: tuple[_Side, ...]
     numeric: bool
 
 
-@dataclass(slots=True)
 class Turn:
     """One update under way.
 
-    Args:
+    Attributes:
         shows: The rows to show once all has been withdrawn.
         changed: For each set of objects, by identity, the slots that kernels have to look at.
         sides: The objects to look at again through a filter; None for one that is gone.
         new: The objects to put in.
         gone: The objects to take out.
+        known: For each set of objects, by identity, how many of its changed slots are of objects
+            that were there before and still are.
+        attributes: For each of these sets which attributes may have changed.
     """
 
-    shows: list[Show] = field(default_factory=list)
-    changed: dict[int, list[int]] = field(default_factory=dict)
-    sides: list[tuple[_Side, Value, int | None]] = field(default_factory=list)
-    new: list[tuple[str, Value, Mapping[str, Value]]] = field(default_factory=list)
-    gone: list[tuple[str, Value]] = field(default_factory=list)
+    __slots__ = ("attributes", "changed", "gone", "known", "new", "shows", "sides")
+
+    def __init__(self) -> None:
+        self.shows: list[Show] = []
+        self.changed: dict[int, list[int]] = {}
+        self.sides: list[tuple[_Side, Value, int | None]] = []
+        self.new: list[tuple[str, Value, Mapping[str, Value]]] = []
+        self.gone: list[tuple[str, Value]] = []
+        self.known: dict[int, int] = {}
+        self.attributes: dict[int, tuple[str, ...]] = {}
 
 
 class Scene:
@@ -97,6 +94,7 @@ class Scene:
     Args:
         design: The network's design.
         module: Its generated module.
+        groups: The pair rules that may be followed together.
 
     Attributes:
         objects: For each percept type its objects with all their attributes.
@@ -105,11 +103,11 @@ class Scene:
     """
 
     __slots__ = (
-        "_filtered", "_is_leaving", "_kernels", "_movements", "_sides", "_views", "objects",
-        "pairs", "tables",
+        "_filtered", "_is_leaving", "_movements", "_pairing", "_programs", "_sides", "_views",
+        "objects", "pairs", "tables",
     )  # fmt: skip
 
-    def __init__(self, design: Design, module: Module) -> None:
+    def __init__(self, design: Design, module: Module, groups: Sequence[GroupProgram] = ()) -> None:
         self.objects: dict[str, dict[Value, Mapping[str, Value]]] = {}
         numeric: dict[str, dict[str, None]] = {}
         kernels = [r for r in design.relations if isinstance(r, Pairs)]
@@ -130,9 +128,9 @@ class Scene:
         }
         self._views: dict[str, list[_Seen]] = {type_: [] for type_ in self.tables}
         self._sides: dict[str, list[_Side]] = {type_: [] for type_ in self.tables}
-        self._kernels: list[_Kernel] = []
         self._movements: dict[tuple[str, tuple[str, ...]], _Movement | None] = {}
         self._is_leaving = False
+        self._programs = groups
 
     def _seen_by(self, view: View) -> Objects:
         found = self._filtered.get(view)
@@ -158,30 +156,8 @@ class Scene:
         for view, name in module.sides.items():
             side = _Side(frozenset(view.attributes), functions[f"see_{name}"], self._filtered[view])
             self._sides[view.type].append(side)
-        numbers = {head.relation.name: head.number for head in design.heads}
-        clauses = {
-            literal.relation.name: body.number
-            for body in reversed(design.bodies)
-            for literal in body.literals
-        }
-        for relation in design.relations:
-            if isinstance(relation, Pairs):
-                number, clause = numbers.get(relation.name), clauses[relation.name]
-                self._kernels.append(self._kernel(relation, number, clause, functions))
-
-    def _kernel(
-        self, relation: Pairs, number: int | None, clause: int, functions: Functions
-    ) -> _Kernel:
-        store = self.pairs[relation.name]
-        return _Kernel(
-            store,
-            functions[f"show_{relation.name}"],
-            functions[f"withdraw_{relation.name}"],
-            number,
-            clause,
-            id(store.left),
-            id(store.right),
-        )
+        groups = [(self.tables[each.type].objects, each) for each in self._programs]
+        self._pairing = Pairing(design, functions, self.pairs, groups)
 
     # -- loading -------------------------------------------------------------------------------
 
@@ -217,9 +193,7 @@ class Scene:
         Raises:
             InferenceError: a test cannot be evaluated.
         """
-        for kernel in self._kernels:
-            kernel.store.load()
-            check(len(kernel.store), kernel.clause)
+        self._pairing.load(check)
 
     # -- following -----------------------------------------------------------------------------
 
@@ -231,9 +205,11 @@ class Scene:
             movement = self._movement(type_, attributes)
             if movement is None:
                 continue
-            slots = movement.table.move(names, moved)
+            slots = movement.table.move(names, moved, plain=move.plain)
             if movement.numeric:
-                turn.changed[id(movement.table.objects)] = slots
+                turn.changed[movement.identity] = slots
+                turn.known[movement.identity] = len(slots)
+                turn.attributes[movement.identity] = movement.attributes
             if movement.views:
                 for name, slot in zip(names, slots, strict=True):
                     _see(movement.views, name, slot, turn.shows)
@@ -249,6 +225,8 @@ class Scene:
             if table is not None:
                 made = _Movement(
                     table,
+                    id(table.objects),
+                    attributes,
                     tuple(view for view in self._views[type_] if view.attributes & touched),
                     tuple(side for side in self._sides[type_] if side.attributes & touched),
                     not touched.isdisjoint(table.objects.columns.attributes),
@@ -278,6 +256,9 @@ class Scene:
                 turn.gone.append((type_, name))
             else:
                 self._put(type_, name, attributes, turn)
+                identity = id(table.objects)
+                turn.known[identity] = turn.known.get(identity, 0) + 1
+                turn.attributes[identity] = table.objects.columns.attributes
 
     def follow(
         self, turn: Turn, record: Callable[[Any], None], check: Callable[[int, int], None]
@@ -301,12 +282,16 @@ class Scene:
         for side, name, slot in turn.sides:
             self._filter(side, name, slot, turn)
         if turn.changed:
-            self._pair(turn.changed, record, check)
+            self._pairing.follow(turn.changed, turn.known, turn.attributes, record, check)
         if strangers:
             for store in self.pairs.values():
                 store.expect_no_strangers()
         for show, key, value in turn.shows:
             show(key, value)
+
+    def follow_alone(self) -> None:
+        """Let no rules follow together from now on."""
+        self._pairing.follow_alone()
 
     def settle(self) -> None:
         """Let the places of objects that have gone be used again."""
@@ -334,30 +319,6 @@ class Scene:
         else:
             return
         turn.changed.setdefault(id(side.objects), []).append(own)
-
-    def _pair(
-        self,
-        changed: Mapping[int, list[int]],
-        record: Callable[[Any], None],
-        check: Callable[[int, int], None],
-    ) -> None:
-        nothing: list[int] = []
-        for kernel in self._kernels:
-            left = changed.get(kernel.left, nothing)
-            right = changed.get(kernel.right, nothing)
-            if not left and not right:
-                continue
-            added, removed = kernel.store.update(left, right)
-            if not added and not removed:
-                continue
-            withdraw, show = kernel.withdraw, kernel.show
-            for one, other in removed:
-                withdraw(one, other)
-            for one, other in added:
-                show(one, other)
-            if kernel.number is not None:
-                record((kernel.number, added, removed, ()))
-            check(len(kernel.store), kernel.clause)
 
 
 def _see(views: Iterable[_Seen], name: Value, slot: int, shows: list[Show]) -> None:

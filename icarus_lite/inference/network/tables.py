@@ -4,13 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-import numpy as np
-
 from icarus_lite.inference.network.kernels import Columns
+from icarus_lite.inference.network.kernels.columns import first_of_run
 from icarus_lite.symbols import Value
-
-_MANY = 40
-"""From so many moved objects on, columns are written by numpy."""
 
 
 class Objects:
@@ -63,7 +59,7 @@ class Table:
         lists: For each attribute its values by slot, None where an object lacks it.
     """
 
-    __slots__ = ("_others", "lists", "objects")
+    __slots__ = ("_last_first", "_last_names", "_last_slots", "_others", "lists", "objects")
 
     def __init__(self, numeric: Sequence[str], others: Sequence[str]) -> None:
         self.objects = Objects(Columns(tuple(numeric)))
@@ -72,9 +68,14 @@ class Table:
         self.lists: dict[str, list[Value | None]] = dict(own)
         for name in numeric:
             self.lists[name] = self.objects.columns.column(name)
+        # Which objects have moved last, their slots, and the first of them if they are a run.
+        self._last_names: list[Value] = []
+        self._last_slots: list[int] = []
+        self._last_first: int | None = None
 
     def put(self, name: Value, attributes: Mapping[str, Value]) -> int:
         """Set an object, new or not; give its slot."""
+        self._last_names = []
         columns = self.objects.columns
         slot = self.objects.put(name, [attributes.get(each) for each in columns.attributes])
         for attribute, column in self._others.items():
@@ -84,35 +85,37 @@ class Table:
                 column[slot] = attributes.get(attribute)
         return slot
 
-    def move(self, names: Sequence[Value], moved: Mapping[str, Sequence[Value]]) -> list[int]:
+    def move(
+        self, names: Sequence[Value], moved: Mapping[str, tuple[Value, ...]], *, plain: bool
+    ) -> list[int]:
         """Set some attributes of objects that are there; give their slots.
 
         Args:
             names: The objects.
             moved: For each attribute one value an object.
+            plain: Whether all values are plain numbers.
         """
-        known, columns = self.objects.places, self.objects.columns
-        slots = [known[name] for name in names]
-        numeric: list[tuple[int, Sequence[Value]]] = []
+        if names != self._last_names:  # mostly the same objects move again
+            known = self.objects.places
+            self._last_names = [*names]
+            slots = self._last_slots = [known[name] for name in names]
+            self._last_first = first_of_run(slots)
+        slots, columns = self._last_slots, self.objects.columns
+        places, numeric = columns.places, []
         for attribute, values in moved.items():
-            place = columns.places.get(attribute)
+            place = places.get(attribute)
             if place is not None:
                 numeric.append((place, values))
-                continue
-            column = self._others.get(attribute)
-            if column is not None:
+            elif attribute in self._others:
+                column = self._others[attribute]
                 for slot, value in zip(slots, values, strict=True):
                     column[slot] = value
-        if not numeric:
-            return slots
-        if len(slots) >= _MANY:
-            arrays = {columns.attributes[place]: np.asarray(values) for place, values in numeric}
-            if all(array.dtype.kind in "if" for array in arrays.values()):
-                columns.move(slots, arrays)
-                return slots
-        columns.assign(slots, numeric)
-        return slots
+        columns.assign(slots, numeric, self._last_first, plain=plain)
+        if not plain or columns.unusual:
+            columns.judge(slots)
+        return [*slots]
 
     def drop(self, name: Value) -> int:
         """Take an object away; give the slot it had, which is its own until `settle`."""
+        self._last_names = []
         return self.objects.drop(name)

@@ -4,8 +4,9 @@ Two networks follow the same cycles. The one runs undisturbed but for a clock ar
 kernel: it gives the time of a cycle and of the kernels in it. The other runs under Python's
 profiler, which slows it down: it gives in what proportions the generated code of the clauses
 shares the rest. Times are those of the processor, so that whatever else the machine does meanwhile
-does not count. What is left over is nobody's: finding out what changed, keeping stores and
-indexes, the log.
+does not count. In both of them pair rules that are otherwise followed together follow each by
+itself, so that it shows what each costs. What is left over is nobody's: finding out what changed,
+keeping stores and indexes, the log.
 """
 
 from __future__ import annotations
@@ -86,6 +87,7 @@ def _clocked(compiled: CompiledDomain, cycles: Sequence[Cycle]) -> tuple[float, 
 
 def _watch(network: Network, kernels: dict[str, _Timed]) -> None:
     """Put a clock before each kernel that has none; a network may begin again with new ones."""
+    _running(network).follow_alone()
     for name, store in _running(network).parts.pairs.items():
         if not isinstance(store.relation, _Timed):
             spent = kernels[name].seconds if name in kernels else 0.0
@@ -104,6 +106,7 @@ def _shares(compiled: CompiledDomain, cycles: Sequence[Cycle]) -> list[float]:
             network.update_snapshot(percepts, given)
         finally:
             profile.disable()
+        _running(network).follow_alone()
     module = _running(network).compiled.module
     blocks = clause_lines(module.source, compiled.domain)
     path = module.path

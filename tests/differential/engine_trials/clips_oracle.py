@@ -14,8 +14,9 @@ from itertools import combinations
 
 import clips
 
+from engine_trials.comparing import Failure, compared
 from engine_trials.histories import World
-from engine_trials.trial import Failure, Trial, compared, told_to_network
+from engine_trials.trial import Trial, told_to_network
 from icarus_lite.language import strata
 from icarus_lite.language.checking.stratification import recursive_concepts
 from icarus_lite.language.percept_types import lineages

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from engine_trials.vocabulary import SUPERTYPE, Kind, Signature, Vocabulary
+from engine_trials.vocabulary import SUPERTYPE, Flavour, Kind, Signature, Vocabulary
 from icarus_lite import Belief, Percept
+from icarus_lite.inference.network import Delta
 from icarus_lite.symbols import Value
 
 
@@ -60,6 +61,40 @@ def worlds(history: Iterable[Change]) -> list[World]:
     return found
 
 
+def as_delta(change: Change) -> Delta:
+    """Give a change as a network is told it."""
+    return Delta(change.percepts, change.gone, change.asserted, change.withdrawn)
+
+
+def as_columns(
+    change: Change, before: World
+) -> tuple[str, list[str], dict[str, list[Value]]] | None:
+    """Give a change as columns of values, if it only gives values to objects already there."""
+    known = {(each.type, each.name): each.attributes for each in before.percepts}
+    kinds = {each.type for each in change.percepts}
+    keys = {tuple(sorted(each.attributes)) for each in change.percepts}
+    if change.gone or len(kinds) != 1 or len(keys) != 1:
+        return None
+    for each in change.percepts:
+        if not known.get((each.type, each.name), {"": 0}).keys() <= each.attributes.keys():
+            return None
+    names = [each.name for each in change.percepts]
+    columns = {key: [each.attributes[key] for each in change.percepts] for key in keys.pop()}
+    return kinds.pop(), names, columns
+
+
+def changed_columns(
+    kind: str, names: Sequence[str], columns: Mapping[str, list[Value]], before: World
+) -> dict[str, list[Value]]:
+    """Leave out the columns in which no value is new."""
+    known = {each.name: each.attributes for each in before.percepts if each.type == kind}
+    return {
+        attribute: values
+        for attribute, values in columns.items()
+        if any(known[n].get(attribute) != v for n, v in zip(names, values, strict=True))
+    }
+
+
 def draw_history(draw: random.Random, vocabulary: Vocabulary, cycles: int) -> tuple[Change, ...]:
     """Draw a history: a first cycle with much in it, then changes, small ones mostly."""
     drawing = _HistoryDraw(draw, vocabulary)
@@ -91,6 +126,8 @@ class _HistoryDraw:
         return Change(tuple(percepts), asserted=tuple(asserted))
 
     def change(self, world: World) -> Change:
+        if self._words.flavour is Flavour.SCENE and self._draw.random() < 0.75:
+            return self._movement(world)
         share = self._draw.choice((0.1, 0.1, 0.3, 1.0))
         percepts: dict[tuple[str, str], Percept] = {}
         gone: list[tuple[str, str]] = []
@@ -120,12 +157,30 @@ class _HistoryDraw:
         fresh = [each for each in asserted if each not in withdrawn]
         return Change(tuple(percepts.values()), tuple(gone), tuple(fresh), tuple(withdrawn))
 
+    def _movement(self, world: World) -> Change:
+        """Move some objects of one type, or all of them, as what carries them would."""
+        kind = self._draw.choice(("obj", "obj", "obj", "part", "spot"))
+        there = [each for each in world.percepts if each.type == kind]
+        share = self._draw.choice((0.1, 0.1, 0.4, 1.0, 1.0))
+        moved = [each for each in there if self._draw.random() < share]
+        numbers = [n for n, its in self._words.signatures[kind].attributes if its is Kind.NUMBER]
+        names = self._draw.sample(numbers, self._draw.randint(1, len(numbers)))
+        found = []
+        for old in moved:
+            new = {name: self._value(Kind.NUMBER) for name in names}
+            found.append(Percept(old.type, old.name, {**old.attributes, **new}))
+        asserted = [self._belief()] if self._draw.random() < 0.3 else []
+        going = [each for each in world.asserted if self._draw.random() < 0.03]
+        withdrawn = [each for each in going if each not in asserted]
+        return Change(tuple(found), asserted=tuple(asserted), withdrawn=tuple(withdrawn))
+
     def _percept(self, kind: str, name: str) -> Percept:
         signature = self._words.signatures[kind]
+        likely = 1.0 if self._words.flavour is Flavour.SCENE else 0.85
         given = {
             each: self._value(its)
             for each, its in signature.attributes
-            if self._draw.random() < 0.85
+            if self._draw.random() < likely
         }
         return Percept(kind, name, given)
 

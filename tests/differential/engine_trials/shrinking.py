@@ -6,8 +6,9 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import TypeVar
 
+from engine_trials.comparing import Failure
 from engine_trials.histories import Change
-from engine_trials.trial import Failure, Trial, failure_of
+from engine_trials.trial import Trial, failure_of
 from icarus_lite.language.syntax import ConceptClause
 
 _T = TypeVar("_T")

@@ -5,26 +5,50 @@ from __future__ import annotations
 import random
 import traceback
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, replace
 
 from engine_trials.clingo_oracle import ClingoOracle
-from engine_trials.histories import Change, World, draw_history, worlds
+from engine_trials.comparing import (
+    Failure,
+    all_named,
+    changed_rows,
+    differing,
+    in_order,
+    named,
+    stretches,
+    texts,
+)
+from engine_trials.histories import (
+    Change,
+    World,
+    as_columns,
+    as_delta,
+    changed_columns,
+    draw_history,
+    worlds,
+)
 from engine_trials.programs import ProgramDraw
 from engine_trials.proofs import circle, faults
+from engine_trials.scenes import SceneDraw, scene_vocabulary
 from engine_trials.scratch import Row, Scratch, row
 from engine_trials.vocabulary import SUPERTYPE, Flavour, Vocabulary, draw_vocabulary
 from engine_trials.writing import domain_text, history_text
 from icarus_lite import Belief
 from icarus_lite.inference import Derivation, FactStore
-from icarus_lite.inference.network import Changes, Delta, Network, compile_domain
+from icarus_lite.inference.network import (
+    Budget,
+    Changes,
+    ForgottenError,
+    Network,
+    compile_domain,
+)
 from icarus_lite.language import check_domain, has_errors, parse_domain
 from icarus_lite.language.syntax import ConceptClause, Domain
-from icarus_lite.symbols import Value
 
-CROWDED_EVERY, PLAIN_EVERY, DEEP_EVERY = 25, 10, 10
-"""One trial in so many is of each special flavour: seeds 24, 49 …; 0, 10 …; 5, 15 …"""
+CROWDED_EVERY, PLAIN_EVERY, DEEP_EVERY, SCENE_EVERY = 25, 10, 10, 10
+"""One trial in so many is of each special flavour: seeds 24, 49 …; 0, 10 …; 5, 15 …; 3, 13 …"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,32 +93,25 @@ class Trial:
         return domain
 
 
-@dataclass(frozen=True, slots=True)
-class Failure:
-    """Where a trial went wrong.
-
-    Args:
-        kind: What was asked: beliefs, attributes, changes, supports, proof, log, copy, error …
-        cycle: In which cycle.
-        message: What was expected and what came.
-    """
-
-    kind: str
-    cycle: int
-    message: str
-
-
 def draw_trial(seed: int, cycles: int = 20, flavour: Flavour | None = None) -> Trial:
     """Draw the trial of a seed; its flavour follows from the seed unless it is given."""
     draw = random.Random(seed)
-    vocabulary = draw_vocabulary(draw, flavour or _flavour(seed))
-    clauses = ProgramDraw(draw, vocabulary).clauses()
+    flavour = flavour or flavour_of(seed)
+    if flavour is Flavour.SCENE:
+        vocabulary = scene_vocabulary(draw)
+        clauses = SceneDraw(draw, vocabulary).clauses()
+    else:
+        vocabulary = draw_vocabulary(draw, flavour)
+        clauses = ProgramDraw(draw, vocabulary).clauses()
     return Trial(seed, vocabulary, clauses, draw_history(draw, vocabulary, cycles))
 
 
-def _flavour(seed: int) -> Flavour:
+def flavour_of(seed: int) -> Flavour:
+    """Give what is special about the trial of a seed."""
     if seed % CROWDED_EVERY == CROWDED_EVERY - 1:
         return Flavour.CROWD
+    if seed % SCENE_EVERY == 3:
+        return Flavour.SCENE
     if seed % PLAIN_EVERY == 0:
         return Flavour.PLAIN
     return Flavour.DEEP if seed % DEEP_EVERY == DEEP_EVERY // 2 else Flavour.USUAL
@@ -125,16 +142,8 @@ def told_to_network(trial: Trial) -> Iterator[tuple[World, frozenset[str]]]:
     """Tell a network the history; give each world, and the beliefs as they are written."""
     network = compile_domain(trial.domain()).network()
     for change, world in zip(trial.history, worlds(trial.history), strict=True):
-        network.update(_delta(change))
-        yield world, _texts(network.beliefs())
-
-
-def compared(who: str, cycle: int, wanted: frozenset[str], got: frozenset[str]) -> Failure | None:
-    """Compare beliefs as they are written."""
-    if wanted == got:
-        return None
-    message = f"missing {sorted(wanted - got)}\nsurplus {sorted(got - wanted)}"
-    return Failure(who, cycle, message)
+        network.update(as_delta(change))
+        yield world, texts(network.beliefs())
 
 
 class _Run:
@@ -146,7 +155,9 @@ class _Run:
         self._domain = domain
         self._worlds = worlds(trial.history)
         self._compiled = compile_domain(self._domain)
-        self._network: Network = self._compiled.network()
+        # Every third network remembers little, so that its log forgets cycles on the way.
+        budget = Budget(changes_kept=40) if self._draw.random() < 1 / 3 else Budget()
+        self._network: Network = self._compiled.network(budget)
         self._scratch = Scratch(self._domain)
 
     def failures(self) -> Iterator[Failure]:
@@ -154,19 +165,20 @@ class _Run:
         copied = self._draw.randrange(len(wanted))
         before: frozenset[Row] = frozenset()
         for cycle, world in enumerate(self._worlds):
-            yield from _difference("Closure", cycle, wanted[cycle], self._scratch.beliefs(world))
+            yield from differing("Closure", cycle, wanted[cycle], self._scratch.beliefs(world))
             if cycle == copied:
                 yield from self._imagined(cycle)
             changes = self._tell(cycle, world)
             got = frozenset(map(row, self._network.beliefs()))
-            yield from _difference("network", cycle, wanted[cycle], got)
-            told = (_texts(changes.added), _texts(changes.removed), _texts(changes.altered))
-            real = _changes(before, got)
+            yield from differing("network", cycle, wanted[cycle], got)
+            told = (texts(changes.added), texts(changes.removed), texts(changes.altered))
+            real = changed_rows(before, got)
             if told != real:
                 yield Failure("changes", cycle, f"told {told}, but what changed is {real}")
             before = got
             yield from self._asked(cycle, world, got)
         yield from self._remembered(wanted)
+        yield from self._recalled(wanted)
         yield from self._retold(wanted[-1])
 
     def _wanted(self) -> list[frozenset[Row]]:
@@ -179,12 +191,16 @@ class _Run:
         """Tell the network what has changed, in one of the ways there are."""
         change = self._trial.history[cycle]
         way = self._draw.random()
-        columns = _columns(change, self._worlds[cycle - 1]) if cycle else None
+        before = self._worlds[cycle - 1] if cycle else World()
+        columns = as_columns(change, before) if cycle else None
         if way < 0.5 and columns is not None:
-            return self._network.move(*columns, change.asserted, change.withdrawn)
+            kind, names, values = columns
+            if way < 0.35:
+                values = changed_columns(kind, names, values, before)
+            return self._network.move(kind, names, values, change.asserted, change.withdrawn)
         if way < 0.2:
             return self._network.update_snapshot(world.percepts, world.asserted)
-        return self._network.update(_delta(change))
+        return self._network.update(as_delta(change))
 
     def _imagined(self, cycle: int) -> Iterator[Failure]:
         """Change a copy, which must not change the network itself."""
@@ -194,27 +210,27 @@ class _Run:
         there = {each.name for each in before.percepts}
         new = tuple(each for each in change.percepts if each.name not in there)
         change = replace(change, percepts=new)
-        other.update(_delta(change))
+        other.update(as_delta(change))
         wanted = self._scratch.beliefs(before.after(change))
         got = frozenset(map(row, other.beliefs()))
-        for failure in _difference("copy", cycle, wanted, got):
+        for failure in differing("copy", cycle, wanted, got):
             yield replace(failure, message=f"{failure.message}\nthe copy was told {change}")
 
     def _asked(self, cycle: int, world: World, held: frozenset[Row]) -> Iterator[Failure]:
         """Ask about some beliefs, present and absent: whether they hold, and why."""
-        facts, derived = self._scratch.facts(world)
-        given = set(facts) - set(derived) | set(world.asserted)
+        facts, derived, given = self._facts(world)
         for name in {each for each, _, _ in held}:
-            wanted = {_name(each) for each in held if each[0] == name}
+            wanted = {named(each) for each in held if each[0] == name}
             network = self._network
-            if network.count(name) != len(wanted) or _texts(network.facts(name)) != wanted:
+            if network.count(name) != len(wanted) or texts(network.facts(name)) != wanted:
                 yield Failure("facts", cycle, f"count or facts of {name} are not {wanted}")
         present = sorted(derived, key=str)
         for belief in self._draw.sample(present, min(4, len(present))):
-            for kind, message in self._unfounded(belief, facts, derived[belief], given):
+            found = self._unfounded(self._network, belief, facts, derived[belief], given)
+            for kind, message in found:
                 yield Failure(kind, cycle, message)
         earlier = self._worlds[self._draw.randrange(len(self._worlds))]
-        names = _names(held)
+        names = all_named(held)
         for name, args, _ in sorted(self._scratch.beliefs(earlier), key=str)[:5]:
             belief = Belief(name, args)
             if self._network.holds(belief) != (str(belief) in names):
@@ -223,19 +239,23 @@ class _Run:
 
     def _unfounded(
         self,
+        network: Network,
         belief: Belief,
         facts: FactStore,
         theirs: Sequence[Derivation],
         given: AbstractSet[Belief],
     ) -> Iterator[tuple[str, str]]:
         """Say what is wrong with the reasons for a belief: the kind of fault, and which."""
-        reasons = [s for s in self._network.supports(belief) if isinstance(s, Derivation)]
+        reasons = list(network.supports(belief))
         for reason in reasons:
             for fault in faults(self._domain, facts, belief, reason):
                 yield "supports", f"{belief}: {fault}"
         if sorted(map(self._reason, reasons)) != sorted(map(self._reason, theirs)):
             yield "supports", f"{belief}: {reasons}, but Closure has {theirs}"
-        wrong = circle(belief, self._network.supports, given.__contains__)
+        first = network.support(belief)
+        if first != next(iter(reasons), None) and not (first is None and belief in given):
+            yield "supports", f"{belief}: the first is not {first} of {reasons}"
+        wrong = circle(belief, lambda each: _as_list(network.support(each)), given.__contains__)
         if wrong:
             yield "proof", wrong
 
@@ -245,89 +265,63 @@ class _Run:
         for condition in clause.elements:
             wanted = [bound for bound, _ in facts.matches(condition.atom, {})]
             got = [dict(bound) for bound in self._network.matches(condition.atom, {})]
-            if sorted(map(_in_order, got)) != sorted(map(_in_order, wanted)):
+            if sorted(map(in_order, got)) != sorted(map(in_order, wanted)):
                 yield Failure("matches", cycle, f"{condition.atom}: {got}, not {wanted}")
 
     def _remembered(self, wanted: Sequence[frozenset[Row]]) -> Iterator[Failure]:
         """Ask about the past, when all is over."""
-        names = [_names(each) for each in wanted]
+        names = [all_named(each) for each in wanted]
+        first = self._network.first_cycle
         for cycle, held in enumerate(names):
-            if _texts(self._network.held_at(cycle)) != held:
+            try:
+                told = texts(self._network.held_at(cycle))
+            except ForgottenError:
+                told = None
+            if told != (held if cycle >= first else None):
                 yield Failure("log", cycle, f"held_at gives not {sorted(held)}")
         beliefs = {(name, args) for cycle in wanted for name, args, _ in cycle}
         for name, args in self._draw.sample(sorted(beliefs, key=str), min(5, len(beliefs))):
             belief = Belief(name, args)
             got = list(self._network.intervals(belief))
-            if got != _intervals([str(belief) in held for held in names]):
+            known = stretches([str(belief) in held for held in names])
+            if got != [each for each in known if each[1] is None or each[1] >= first]:
                 yield Failure("log", -1, f"{belief} is said to be held {got}")
+
+    def _recalled(self, wanted: Sequence[frozenset[Row]]) -> Iterator[Failure]:
+        """Go back to a cycle, and ask for the reasons of then; the present must not notice."""
+        cycle = self._draw.randrange(self._network.first_cycle, len(wanted))
+        then = self._network.recall(cycle)
+        yield from differing("recall", cycle, wanted[cycle], frozenset(map(row, then.beliefs())))
+        if set(then.percepts()) != set(self._worlds[cycle].percepts):
+            yield Failure("recall", cycle, f"perceived was not {then.percepts()}")
+        facts, derived, given = self._facts(self._worlds[cycle])
+        present = sorted(derived, key=str)
+        for belief in self._draw.sample(present, min(3, len(present))):
+            for kind, message in self._unfounded(then, belief, facts, derived[belief], given):
+                yield Failure(f"{kind} recalled", cycle, message)
+        now = frozenset(map(row, self._network.beliefs()))
+        yield from differing("network after recall", cycle, wanted[-1], now)
+        if set(self._network.percepts()) != set(self._worlds[-1].percepts):
+            yield Failure("recall", cycle, "the present percepts are others now")
+
+    def _facts(
+        self, world: World
+    ) -> tuple[FactStore, Mapping[Belief, Sequence[Derivation]], AbstractSet[Belief]]:
+        """Give all facts of a world, those derived with all derivations, and those given."""
+        facts, derived = self._scratch.facts(world)
+        return facts, derived, set(facts) - set(derived) | set(world.asserted)
 
     def _retold(self, wanted: frozenset[Row]) -> Iterator[Failure]:
         """Tell a new network the last world at once: how one came there must not matter."""
         network = self._compiled.network()
         network.update_snapshot(self._worlds[-1].percepts, self._worlds[-1].asserted)
         got = frozenset(map(row, network.beliefs()))
-        yield from _difference("network told at once", -1, wanted, got)
+        yield from differing("network told at once", -1, wanted, got)
 
     def _reason(self, derivation: Derivation) -> tuple[str, ...]:
         number = self._domain.concepts.index(derivation.clause)
         return str(number), *map(str, derivation.matched)
 
 
-def _delta(change: Change) -> Delta:
-    return Delta(change.percepts, change.gone, change.asserted, change.withdrawn)
-
-
-def _columns(change: Change, before: World) -> tuple[str, list[str], dict[str, list[Value]]] | None:
-    """Give a change as columns of values, if it only gives values to objects already there."""
-    known = {(each.type, each.name): each.attributes for each in before.percepts}
-    kinds = {each.type for each in change.percepts}
-    keys = {tuple(sorted(each.attributes)) for each in change.percepts}
-    if change.gone or len(kinds) != 1 or len(keys) != 1:
-        return None
-    for each in change.percepts:
-        if not known.get((each.type, each.name), {"": 0}).keys() <= each.attributes.keys():
-            return None
-    names = [each.name for each in change.percepts]
-    columns = {key: [each.attributes[key] for each in change.percepts] for key in keys.pop()}
-    return kinds.pop(), names, columns
-
-
-def _difference(
-    who: str, cycle: int, wanted: frozenset[Row], got: frozenset[Row]
-) -> Iterator[Failure]:
-    if wanted == got:
-        return
-    kind = "attributes" if _names(wanted) == _names(got) else "beliefs"
-    missing, surplus = sorted(map(str, wanted - got)), sorted(map(str, got - wanted))
-    yield Failure(f"{kind} of {who}", cycle, f"missing {missing}\nsurplus {surplus}")
-
-
-def _changes(before: frozenset[Row], now: frozenset[Row]) -> tuple[frozenset[str], ...]:
-    added, removed = _names(now) - _names(before), _names(before) - _names(now)
-    return added, removed, _names(now - before) - added
-
-
-def _intervals(held: Sequence[bool]) -> list[tuple[int, int | None]]:
-    spans: list[tuple[int, int | None]] = []
-    for cycle, (before, now) in enumerate(zip([False, *held], held, strict=False)):
-        if now and not before:
-            spans.append((cycle, None))
-        elif before and not now:
-            spans[-1] = (spans[-1][0], cycle)
-    return spans
-
-
-def _name(belief: Row) -> str:
-    return str(Belief(belief[0], belief[1]))
-
-
-def _names(beliefs: Iterable[Row]) -> frozenset[str]:
-    return frozenset(map(_name, beliefs))
-
-
-def _texts(beliefs: Iterable[Belief]) -> frozenset[str]:
-    return frozenset(map(str, beliefs))
-
-
-def _in_order(bindings: Mapping[str, Value]) -> str:
-    return str(sorted(bindings.items()))
+def _as_list(support: Derivation | None) -> list[Derivation]:
+    return [] if support is None else [support]

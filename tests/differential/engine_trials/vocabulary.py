@@ -25,7 +25,8 @@ class Flavour(StrEnum):
     """What is special about a random domain.
 
     A crowd has many objects and many numbers; a mass has so many that the rules over pairs of
-    them, which are all it has, are followed by other means than in a small scene. In a plain
+    them, which are all it has, are followed by other means than in a small scene. A scene has
+    several such rules over the same columns, and concepts that rest on them. In a plain
     domain no concept has attributes. In a deep one recursive concepts have some, and may read them
     while they recur; in all others they have none: which round of inference a belief first follows
     in decides then which values it has, and clingo knows no rounds.
@@ -34,6 +35,7 @@ class Flavour(StrEnum):
     USUAL = "usual"
     CROWD = "crowd"
     MASS = "mass"
+    SCENE = "scene"
     PLAIN = "plain"
     DEEP = "deep"
 
@@ -89,12 +91,12 @@ SUPERTYPE = {"part": "obj"}
 
 _S, _N = Kind.SYMBOL, Kind.NUMBER
 _OBJ = (("class", _S), ("h", _N), ("len", _N), ("is-on", _S))
-_PERCEPTS = (
+PERCEPTS = (
     Signature("obj", (_S,), _OBJ),
     Signature("part", (_S,), (*_OBJ, ("grip", _N))),
     Signature("spot", (_S,), (("h", _N), ("at", _S))),
 )
-_ASSERTED = (
+ASSERTED = (
     Signature("e", (_S, _S)),
     Signature("f", (_S,)),
     Signature("index", (_S, _N, _S)),
@@ -119,7 +121,7 @@ def draw_vocabulary(draw: random.Random, flavour: Flavour = Flavour.USUAL) -> Vo
         count = draw.randint(70, 130)
     symbols = tuple(f"o{i}" for i in range(count)) if crowd else tuple("abcde"[:count])
     numbers = tuple(range(0, 200, 7)) if crowd else tuple(range(1, draw.randint(4, 6)))
-    found = Vocabulary(_PERCEPTS, _ASSERTED, tuple(layers), typed, symbols, numbers, flavour)
+    found = Vocabulary(PERCEPTS, ASSERTED, tuple(layers), typed, symbols, numbers, flavour)
     return found if typed else _untyped(found)
 
 

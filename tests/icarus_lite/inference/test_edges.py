@@ -149,3 +149,41 @@ def test_a_cycle_beyond_the_budget_names_the_clause_and_the_next_one_goes_on() -
         "(pair t1 t0)",
         "(pair t1 t1)",
     ]
+
+
+@pytest.mark.parametrize(
+    ("clauses", "clause"),
+    [
+        (
+            """((num ?x ^k ?x) :elements ((thing ?o ^x ?x)))
+               ((num ?m ^k ?n) :elements ((num ?n)) :binds ((?m (+ ?n 1))))""",
+            r"d\.icr:4: \(num \?m",
+        ),
+        (
+            """((to ?a ?b ^k ?x) :elements ((thing ?a ^x ?x) (thing ?b)))
+               ((to ?a ?c ^k ?k) :elements ((to ?a ?b ^k ?k) (to ?b ?c)))""",
+            r"d\.icr:[34]: \(to \?a",
+        ),
+    ],
+)
+@pytest.mark.parametrize("budget", [Budget(facts=200), Budget(seconds=0.2)])
+def test_recursion_that_computes_attributes_keeps_to_the_budget(clauses, clause, budget) -> None:
+    domain, _ = parse_domain(f"(percepts (thing ^x))\n(concepts\n{clauses})", "d.icr")
+    engine = InferenceEngine(domain, budget=budget)
+    memory = engine.step(Memory(), [])
+    things = [Percept("thing", f"t{number:03}", {"x": number}) for number in range(120)]
+    said = "more than 200 beliefs" if budget.facts == 200 else r"was being joined .* 0\.2 s"
+    with pytest.raises(InferenceError, match=f"^{clause}.*{said}, (the|its) budget"):
+        engine.step(memory, things)
+    assert engine.step(memory, []).state.beliefs == ()
+
+
+def test_a_count_without_an_end_names_the_clause_that_counts() -> None:
+    domain, _ = parse_domain(
+        "(percepts (thing ^x))\n(concepts\n((num ?x) :elements ((thing ?o ^x ?x)))\n"
+        "((num ?m) :elements ((num ?n)) :binds ((?m (+ ?n 1)))))",
+        "d.icr",
+    )
+    engine = InferenceEngine(domain, budget=Budget(facts=100))
+    with pytest.raises(InferenceError, match=r"^d\.icr:4: \(num \?m\) concludes more than 100"):
+        engine.step(Memory(), [Percept("thing", "t", {"x": 1})])

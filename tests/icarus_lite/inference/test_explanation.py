@@ -3,13 +3,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from icarus_lite import Action, Agent, Belief, Outcome, Percept
 from icarus_lite.inference import (
     BeliefState,
+    Budget,
     Explanation,
+    ForgottenError,
     InferenceEngine,
     Memory,
     explain,
@@ -213,3 +216,91 @@ def test_an_asserted_belief_that_is_derived_as_well_has_both_reasons() -> None:
         "because (tie a b) succeeded, reported in cycle 0",
         "by its definition (line 1)",
     ]
+
+
+LIFE = [
+    (PERCEPTS, [Outcome(Action("pick-up", ("h1", "o1")))]),
+    (PERCEPTS[:2], []),
+    (PERCEPTS, []),
+    (PERCEPTS, [Outcome(Action("pick-up", ("h2", "o1")))]),
+    (PERCEPTS, []),
+]
+
+
+def test_why_it_was_believed_in_an_earlier_cycle() -> None:
+    agent, told = Agent(DOMAIN), []
+    asked = [f"({p} {h})" for p in ("idle", "busy") for h in ("h1", "h2")] + ["(holding h2 o1)"]
+    for percepts, outcomes in LIFE:
+        agent.cycle(percepts, outcomes)
+        told.append({each: [*agent.why(each).as_document()["nodes"]] for each in asked})
+    for cycle, wanted in enumerate(told):
+        for each in asked:
+            found = agent.why(each, cycle=cycle)
+            assert found.cycle == cycle
+            assert found.as_document()["nodes"] == wanted[each]
+    assert str(agent.why("(busy h1)", cycle=0)) == (
+        "(busy h1)  by its definition (line 4)\n"
+        "  (holding h1 o1)  because (pick-up h1 o1) succeeded, reported in cycle 0\n"
+        "  (object o1)  is perceived"
+    )
+    assert str(agent.why("(busy h1)", cycle=1)) == "(busy h1)  is not believed in cycle 1"
+
+
+def test_a_cycle_that_is_forgotten_is_said_to_be() -> None:
+    agent = Agent(DOMAIN, budget=Budget(changes_kept=6))
+    for percepts, outcomes in LIFE * 20:
+        agent.cycle(percepts, outcomes)
+    with pytest.raises(ForgottenError, match="cycle 3 is not on record, which begins with cycle "):
+        agent.why("(busy h1)", cycle=3)
+    with pytest.raises(ForgottenError, match="there is no cycle 100; the last one is 99"):
+        agent.why("(busy h1)", cycle=100)
+    assert agent.why("(holding h2 o1)", cycle=98).action == Action("pick-up", ("h2", "o1"))
+    assert len(agent.why("(holding h2 o1)").periods) < 5
+
+
+def test_an_attachment_of_the_past_has_the_action_of_then() -> None:
+    domain, _ = parse_domain(
+        "(percepts (o)) (skills ((tie ?a ?b) :elements ((o ?a) (o ?b)) :actions ((*tie ?a ?b))))"
+        " (attachments ((tie ?a ?b) :child ?a :parent ?b))"
+        " (concepts ((tied ?a) :elements ((attached ?a ?any))))"
+    )
+    percepts = [Percept("o", name) for name in "abc"]
+    engine, memory, memories = InferenceEngine(domain), Memory(), []
+    for args in (("a", "b"), ("a", "c"), ("b", "c")):
+        memory = engine.step(memory, percepts, [Outcome(Action("tie", args))])
+        memories.append(memory)
+    for cycle, wanted in enumerate(memories):
+        state = engine.look_back(cycle)
+        assert state.hierarchy == wanted.state.hierarchy
+        assert dict(state.asserted()) == dict(wanted.state.asserted())
+        assert str(explain(Belief("tied", ("a",)), state)) == str(
+            explain(Belief("tied", ("a",)), wanted.state)
+        )
+
+
+def test_a_step_from_another_memory_begins_a_run_of_its_own() -> None:
+    engine, memories = InferenceEngine(DOMAIN), [Memory()]
+    for percepts, outcomes in LIFE:
+        memories.append(engine.step(memories[-1], percepts, outcomes))
+    other = engine.step(memories[2], PERCEPTS, [Outcome(Action("pick-up", ("h2", "o1")))])
+    assert str(engine.look_back(2).beliefs) == str(other.state.beliefs)
+    with pytest.raises(ForgottenError, match="cycle 1 is not on record"):
+        engine.look_back(1)
+    with pytest.raises(ForgottenError, match="there is no cycle 4"):
+        engine.look_back(4)
+    engine.step(other, PERCEPTS)
+    assert engine.look_back(2).beliefs == other.state.beliefs
+
+
+def test_of_many_periods_the_last_are_told() -> None:
+    agent = Agent(DOMAIN)
+    for _ in range(9):
+        agent.cycle(PERCEPTS)
+        agent.cycle(PERCEPTS[1:])
+    agent.cycle(PERCEPTS)
+    found = agent.why("(idle h1)")
+    assert len(found.periods) == 10
+    assert str(found).splitlines()[-1] == (
+        "  it has been believed 5 times before, and in cycle 10, in cycle 12, in cycle 14, "
+        "in cycle 16, from cycle 18 on"
+    )

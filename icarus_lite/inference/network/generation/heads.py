@@ -181,7 +181,9 @@ def _grow(lines: Lines, heads: Sequence[Head], wiring: Wiring, number: int, clau
                     lines.add(f"insert_{name}(key, next(stage))")
                     lines.add(f"{name}_new[key] = None", f"{name}_work.append(key)")
                 lines.add(f"{name}_reached.clear()")
-                lines.add(f"if len({name}) > most: too_many({head.bodies[0].number})")
+                own = (body for body in head.bodies if head.facts in body.relations)
+                clause = next(own, head.bodies[0]).number
+                lines.add(f"if len({name}) > most: too_many({clause})")
     lines.add("")
 
 

@@ -127,6 +127,10 @@ class Join:
             self.lines.add(self.rest)
         self.lines.indent(-self._opened)
 
+    def each(self, names: Sequence[str], rows: str) -> None:
+        """Open a loop over rows, the cells of which are unpacked into these identifiers."""
+        self._loop(f"for {', '.join(names)} in {rows}:")
+
     def bind_row(self, terms: Sequence[Term], names: Sequence[str]) -> None:
         """Bind the cells of a row, which are in these identifiers, and check what is known."""
         checks = []

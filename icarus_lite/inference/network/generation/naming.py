@@ -30,6 +30,7 @@ _OWN = frozenset(
         "load",
         "lost",
         "most",
+        "pairs",
         "parts",
         "record",
         "rest",

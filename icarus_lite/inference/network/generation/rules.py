@@ -1,7 +1,8 @@
 """One clause as Python source: what it concludes when a row of its body comes or goes.
 
 For each condition there is a function that is called with a row of it, `by` 1 when the row has
-appeared and -1 when it goes, and joins the others. Two more functions join the whole: one to load
+appeared and -1 when it goes, and joins the others. Where a kernel keeps the rows it is called with
+all of them that have appeared, or that go, at once. Two more functions join the whole: one to load
 a network that believes nothing yet, one to find every derivation of a given belief.
 """
 
@@ -22,7 +23,7 @@ from icarus_lite.inference.network.generation.joins import (
 )
 from icarus_lite.inference.network.generation.writing import Lines
 from icarus_lite.inference.network.ordering import Step, arrange
-from icarus_lite.inference.network.relations import Facts, Relation
+from icarus_lite.inference.network.relations import Facts, Pairs, Relation
 from icarus_lite.language.syntax import Expression, Term, Variable
 
 
@@ -164,8 +165,12 @@ class _Rule:
             self._wiring.present.setdefault(lead.relation.name, []).append(name)
         names = self._join((), self._lines, lead).cell_names(lead.terms)
         by = [] if inside else ["by"]
-        with self._lines.block(f"def {name}({', '.join([*names, *by])}):"):
+        at_once = isinstance(lead.relation, Pairs)  # a kernel tells of many rows together
+        parameters = ["pairs", "by"] if at_once else [*names, *by]
+        with self._lines.block(f"def {name}({', '.join(parameters)}):"):
             join = self._join((), self._lines, lead)
+            if at_once:
+                join.each(names, "pairs")
             join.bind_row(lead.terms, names)
             steps = arrange(self._body, self._design.sizes, join.known, leading=lead)
             self._wiring.plans[self._body.number][f"{number}"] = steps
@@ -185,13 +190,17 @@ class _Rule:
         positive = {v for e in self._body.literals for t in e.terms for v in variables_of(t)}
         opened = self._join((), self._lines, None)
         names = opened.cell_names(lead.terms)
-        with self._lines.block(f"def {name}({', '.join([*names, 'by'])}):"):
+        at_once = isinstance(lead.relation, Pairs)
+        parameters = ["pairs"] if at_once else names
+        with self._lines.block(f"def {name}({', '.join([*parameters, 'by'])}):"):
             join = self._join((), self._lines, None)
+            if at_once:
+                join.each(names, "pairs")
             join.bind_row(lead.terms, names)
             join.known &= positive
             if not self._is_whole(lead, join.known):
                 with self._lines.block(f"if {join.denied(lead)}:"):
-                    self._lines.add("return")
+                    self._lines.add(join.fail)
             steps = arrange(self._body, self._design.sizes, join.known, without=lead)
             self._wiring.plans[self._body.number][f"not {number}"] = steps
             join.steps(steps)

@@ -2,7 +2,8 @@
 
 `show` is called with a row that has come to be, `withdraw` with one that is no longer. What denies
 is asked while the row is not there, what joins while it is: so that a clause which looks at the
-same relation twice counts each derivation once.
+same relation twice counts each derivation once. Of pairs that a kernel keeps both are told of all
+rows together.
 """
 
 from __future__ import annotations
@@ -49,12 +50,14 @@ class _Store:
 
     def _pairs(self) -> None:
         """A kernel keeps the pairs; there is nothing to do but to tell."""
-        with self._lines.block(f"def show_{self._name}(cell_1, cell_2):"):
-            self._lines.add(*self._calls(self._absent, "-1"), *self._calls(self._present, "1"))
-            self._lines.add("return")
-        with self._lines.block(f"def withdraw_{self._name}(cell_1, cell_2):"):
-            self._lines.add(*self._calls(self._present, "-1"), *self._calls(self._absent, "1"))
-            self._lines.add("return")
+        for word, first, then, by in (
+            ("show", self._absent, self._present, ("-1", "1")),
+            ("withdraw", self._present, self._absent, ("-1", "1")),
+        ):
+            with self._lines.block(f"def {word}_{self._name}(pairs):"):
+                self._lines.add(*(f"{function}(pairs, {by[0]})" for function in first))
+                self._lines.add(*(f"{function}(pairs, {by[1]})" for function in then))
+                self._lines.add("return")
         self._lines.add("")
 
     def _calls(self, functions: Sequence[str], by: str) -> list[str]:

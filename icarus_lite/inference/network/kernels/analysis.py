@@ -60,6 +60,8 @@ class Axis:
     reach: Callable[[float], float]
 
     def __str__(self) -> str:
+        if isinstance(self.limit, Constant) and not isinstance(self.limit.value, str):
+            return f"|{self.left} - {self.right}| bounded by {self.reach(self.limit.value):g}"
         return f"|{self.left} - {self.right}| bounded by {self.limit}"
 
 

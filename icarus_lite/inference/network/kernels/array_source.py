@@ -63,8 +63,27 @@ class ArrayWriter:
         Raises:
             NotVectorizableError: they must be computed in Python.
         """
+        self.share(tests)
+        hold, doubt = self.conjunction(tests)
+        self._lines.append(f"return {hold}, {doubt or None}")
+        return self._lines
+
+    @property
+    def lines(self) -> list[str]:
+        """The statements written so far."""
+        return self._lines
+
+    def share(self, tests: Sequence[Expression]) -> None:
+        """See to it that what these tests have in common is computed once."""
         counted = Counter(part for test in tests for part in parts_of(test))
         self._shared = {part for part, count in counted.items() if count > 1}
+
+    def conjunction(self, tests: Sequence[Call]) -> tuple[str, str]:
+        """Write that all tests hold; give what says so, and what says where that is in doubt.
+
+        Raises:
+            NotVectorizableError: they must be computed in Python.
+        """
         hold, doubt = "", ""
         for number, test in enumerate(tests):
             found, doubts = self._test(test), self._doubts_of(test)
@@ -74,8 +93,7 @@ class ArrayWriter:
             last = number == len(tests) - 1
             joined = f"{hold} & ({found})" if hold else found
             hold = joined if last and not doubt else self._assign("hold", joined)
-        self._lines.append(f"return {hold}, {doubt or None}")
-        return self._lines
+        return hold, doubt
 
     def numbers(self, expressions: Sequence[Expression]) -> list[str]:
         """Write the values of numeric expressions.
@@ -83,8 +101,7 @@ class ArrayWriter:
         Raises:
             NotVectorizableError: they must be computed in Python.
         """
-        counted = Counter(part for each in expressions for part in parts_of(each))
-        self._shared = {part for part, count in counted.items() if count > 1}
+        self.share(expressions)
         words = [self.number(each) for each in expressions]
         doubts = dict.fromkeys(name for each in expressions for name in self._doubts_of(each))
         doubt = " | ".join(doubts) if doubts else "None"

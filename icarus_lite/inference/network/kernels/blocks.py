@@ -49,7 +49,7 @@ def _settle(tester: Tester, rows: Slots, hold: Truths, doubt: Truths | None, *, 
         if doubt is not None:
             doubt &= regular
     if tester.plan.distinct:
-        where = _own_pairs(tester, rows, on_left=not flip)
+        where = own_pairs(tester, rows, on_left=not flip)
         hold[where] = False
         if doubt is not None and tester.plan.distinct_first:
             doubt[where] = False
@@ -63,7 +63,7 @@ def _settle(tester: Tester, rows: Slots, hold: Truths, doubt: Truths | None, *, 
                 hold[n, other] = tester.is_exactly(slot, other, on_left=not flip)
 
 
-def _own_pairs(tester: Tester, rows: Slots, *, on_left: bool) -> tuple[Slots, Slots]:
+def own_pairs(tester: Tester, rows: Slots, *, on_left: bool) -> tuple[Slots, Slots]:
     """Give where in a block an object meets itself."""
     if tester.same:
         return np.arange(len(rows)), rows

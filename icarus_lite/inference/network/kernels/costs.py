@@ -61,6 +61,28 @@ ORDER_SORT_OBJECT = 0.3
 """One object there."""
 
 
+GROUP_MOVE = 4.0
+"""An object that moves, its partners by all rules of a group found and compared."""
+
+GROUP_PLACE = 0.025
+"""One object looked at to see whether it is near, up to a hundred objects; then they are sorted."""
+
+GROUP_PAIR = 0.0005
+"""One numpy operation on one pair there; what rules have in common is computed once."""
+
+GROUP_NEAR = 60.0
+"""A grid of all objects for a group."""
+
+GROUP_NEAR_OBJECT = 0.7
+"""One object there, and all pairs of which it is the left one."""
+
+FEW_MOVED = 400
+"""More moved objects than that are never followed one by one together."""
+
+GROUP_CALL = 8.0
+"""All pairs of all rules of a group, apart from the operations."""
+
+
 @dataclass(frozen=True, slots=True)
 class Costs:
     """Estimates for the tests of one rule, in microseconds.
@@ -163,6 +185,63 @@ class OneWay(Costs):
 
     def _price(self, way: str, size: float) -> float:
         return 0.0 if way == self.way else 1.0 + size
+
+
+@dataclass(frozen=True, slots=True)
+class GroupCosts:
+    """Estimates for the rules of a group together, in microseconds.
+
+    Args:
+        operations: How many operations they take a pair, all together.
+        rules: How many of them are kept as a matrix.
+        boxed: Whether bounds on distances spare them most pairs.
+    """
+
+    operations: int
+    rules: int
+    boxed: bool
+
+    @classmethod
+    def of(cls, costs: Sequence[Costs], *, boxed: bool) -> GroupCosts:
+        """Sum up what the rules cost."""
+        return cls(sum(each.operations for each in costs), len(costs), boxed)
+
+    def choose(self, moved: int, size: int, *, arrays: bool) -> str:
+        """Choose a way: `few`, `near`, `whole`, or `alone` where each rule had better go alone.
+
+        Args:
+            moved: How many objects have moved.
+            size: How many there are, on whichever side are more.
+            arrays: Whether the rules can be tested by arrays.
+        """
+        places = min(size, 100) if self.boxed else size
+        rate = GROUP_PLACE
+        if not self.boxed:
+            rate += LIST_OPERATION * self.operations
+        ways = {"few": moved * (GROUP_MOVE + rate * places)}
+        if arrays:
+            call = GROUP_CALL + BLOCK_OPERATION * self.operations
+            ways["whole"] = call + GROUP_PAIR * self.operations * size * size
+            if self.boxed:
+                ways["near"] = GROUP_NEAR + call + GROUP_NEAR_OBJECT * size
+        way = min(ways, key=ways.__getitem__)
+        # With no bound and no arrays the rules do as well by themselves.
+        return "alone" if way == "few" and moved > FEW_MOVED else way
+
+
+@dataclass(frozen=True, slots=True)
+class OneGroupWay(GroupCosts):
+    """Costs by which one way always seems the cheapest: to measure it, or to test it, alone.
+
+    Args:
+        way: `few`, `near`, `whole` or `alone`.
+    """
+
+    way: str = "few"
+
+    def choose(self, moved: int, size: int, *, arrays: bool) -> str:  # noqa: ARG002 - see `GroupCosts`
+        """See `GroupCosts`."""
+        return self.way
 
 
 def _inside(test: Expression, inputs: frozenset[Expression]) -> list[Call]:

@@ -54,6 +54,7 @@ class PairKernel:
         axes: The bounds on the distance of a pair.
         symmetric: Whether (b, a) holds whenever (a, b) does.
         plan: What the relations are made with.
+        paired: The tests that are about both objects, constant parts computed.
     """
 
     sides: tuple[PairSide, PairSide]
@@ -67,6 +68,7 @@ class PairKernel:
     axes: tuple[Axis, ...]
     symmetric: bool
     plan: OrderPlan | MatrixPlan
+    paired: tuple[Call, ...]
 
     @property
     def summary(self) -> str:
@@ -191,7 +193,7 @@ def compile_pair(
         plan = MatrixPlan(*plans, program.mask, placed, symmetric, distinct, distinct_first, costs)
     return PairKernel(
         (left, right), ordered, gates, distinct, path, program.source, limit, order, axes,
-        symmetric, plan,
+        symmetric, plan, tuple(paired),
     )  # fmt: skip
 
 

@@ -1,6 +1,6 @@
 """A pair relation as a matrix of bytes, brought up to date in the cheapest of four ways.
 
-One byte a pair, so that a single question costs one look into a `bytearray`. Objects that have
+Objects that have
 changed mean rows and columns to be computed anew and compared with what is stored, as a whole: by
 list comprehensions where there are few pairs, by numpy in blocks of rows where there are many. With
 a known bound on the distance, few objects are compared with those in their strip only, many by a
@@ -9,81 +9,46 @@ sweep over neighbours.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
 from icarus_lite.inference.network.kernels.blocks import blocks
+from icarus_lite.inference.network.kernels.byte_matrix import ByteMatrix, ones
 from icarus_lite.inference.network.kernels.columns import Columns
 from icarus_lite.inference.network.kernels.neighbours import neighbours
-from icarus_lite.inference.network.kernels.relation import Bind, Change, Pair, PairRelation
+from icarus_lite.inference.network.kernels.relation import (
+    Bind,
+    Change,
+    Pair,
+)
 from icarus_lite.inference.network.kernels.strips import Strips
-from icarus_lite.inference.network.kernels.tester import MatrixPlan, Slots, Tester
+from icarus_lite.inference.network.kernels.tester import MatrixPlan, Slots
 
 _SHORT = 48
 """Rows up to this length are compared byte by byte, longer ones by numpy."""
 
 
-class MatrixRelation(PairRelation):
+class MatrixRelation(ByteMatrix):
     """See the module.
 
     Args:
         plan: What is known of the rule.
         columns: Its objects.
         bind: Gives the exact test and the gates over columns.
-
-    Attributes:
-        bits: One byte a pair, 1 where it holds: `bits[left * stride + right]`. Growth replaces it.
-        stride: The length of a row.
     """
 
-    __slots__ = (
-        "_bind",
-        "_codes",
-        "_count",
-        "_few_pairs",
-        "_grid",
-        "_plan",
-        "_strips",
-        "_tester",
-        "bits",
-        "stride",
-    )
+    __slots__ = ("_few_pairs", "_strips")
 
     def __init__(self, plan: MatrixPlan, columns: tuple[Columns, Columns], bind: Bind) -> None:
-        self._plan = plan
-        self._bind = bind
-        self._tester = Tester(plan, columns, bind)
+        super().__init__(plan, columns, bind)
         self._strips: Strips | None = None
-        self._codes: Slots | None = None  # where the ones are, as long as that is known
-        self._count = 0
         self._few_pairs = plan.costs.few_pairs
-        self.stride = 16
-        self._allocate(16)
 
-    def __len__(self) -> int:
-        return self._count
-
-    def holds(self, left: int, right: int) -> bool:
-        """Tell whether a pair of slots is in the relation; the slots must be known to it."""
-        return self.bits[left * self.stride + right] == 1
-
-    def of_left(self, left: int) -> list[int]:
-        """Give the right slots that are paired with a left one, in ascending order."""
-        begin = left * self.stride
-        return _ones(self.bits, begin, begin + self._tester.right.size)
-
-    def of_right(self, right: int) -> list[int]:
-        """Give the left slots that are paired with a right one, in ascending order."""
-        tester = self._tester
-        if tester.mirrored:
-            return self.of_left(right)
-        column = self.bits[right : right + tester.left.size * self.stride : self.stride]
-        return _ones(column, 0, len(column))
-
-    def pairs(self) -> Iterator[Pair]:
-        """Give all pairs, in ascending order."""
-        return ((i, j) for i in range(self._tester.left.size) for j in self.of_left(i))
+    def forget(self) -> None:
+        """Rely no longer on where objects were: moves are followed elsewhere from now on."""
+        super().forget()
+        self._strips = None
 
     def copy(self, left: Columns, right: Columns) -> MatrixRelation:
         """Give a relation in the same state over copies of its columns."""
@@ -135,12 +100,7 @@ class MatrixRelation(PairRelation):
         else:
             added, removed = self._by_cheapest(changed_left, changed_right, pairs)
         if added or removed:
-            self._count += len(added) - len(removed)
-            bits, stride = self.bits, self.stride
-            for i, j in added:
-                bits[i * stride + j] = 1
-            for i, j in removed:
-                bits[i * stride + j] = 0
+            self._write(added, removed)
         return added, removed
 
     def _by_cheapest(
@@ -179,23 +139,6 @@ class MatrixRelation(PairRelation):
                 self._strips = Strips(self._tester)
             estimates["strip"] = costs.strips(rows, self._strips.candidates)
         return min(estimates, key=estimates.__getitem__)
-
-    # What is stored.
-
-    def _reserve(self) -> None:
-        """Make room for all objects."""
-        left, right = self._tester.left.size, self._tester.right.size
-        old = self._grid
-        if left > old.shape[0] or right > self.stride:
-            rows = max(old.shape[0], _roomy(left))
-            self.stride = max(self.stride, _roomy(right))
-            self._codes = None
-            self._allocate(rows)
-            self._grid[: old.shape[0], : old.shape[1]] = old
-
-    def _allocate(self, rows: int) -> None:
-        self.bits = bytearray(rows * self.stride)
-        self._grid = np.frombuffer(self.bits, dtype=np.uint8).reshape(rows, self.stride)
 
     # One row after the other.
 
@@ -275,7 +218,7 @@ class MatrixRelation(PairRelation):
             return []
         if slot in own.odd or others.odd:
             row = tester.row(slot, on_left=on_left)
-            return _ones(row, 0, len(row))
+            return ones(row, 0, len(row))
         programs = self._plan.left.programs if on_left else self._plan.right.programs
         among = strips.near(slot, on_left=on_left)
         try:
@@ -322,19 +265,7 @@ class MatrixRelation(PairRelation):
 
     def _by_sweep(self) -> Change | None:
         codes = self._swept()
-        if codes is None:
-            return None
-        flat, stride = self._grid.reshape(-1), self.stride
-        old = self._codes
-        if old is None:
-            old = np.flatnonzero(flat.view(np.bool_))  # much faster than of bytes
-        added = codes[flat[codes] == 0]
-        flat[codes] = 2
-        removed = old[flat[old] == 1]
-        flat[removed] = 0
-        flat[codes] = 1
-        self._codes = codes
-        return _as_pairs(added, stride), _as_pairs(removed, stride)
+        return None if codes is None else self._replace(codes)
 
     def _swept(self) -> Slots | None:
         """Give all pairs as numbers left * stride + right; None where a sweep does not help."""
@@ -342,21 +273,6 @@ class MatrixRelation(PairRelation):
             return None
         found = neighbours(self._tester)
         return None if found is None else found[0] * self.stride + found[1]
-
-
-def _roomy(size: int) -> int:
-    """Give a capacity with room to grow: a quarter more while it is small; whole cache lines."""
-    return (size + size // 4 + 15) // 16 * 16 if size < 512 else (size + 63) // 64 * 64
-
-
-def _ones(row: bytes | bytearray, begin: int, end: int) -> list[int]:
-    """Give the places of the ones in a stretch, found at the speed of memchr."""
-    found = []
-    place = row.find(1, begin, end)
-    while place >= 0:
-        found.append(place - begin)
-        place = row.find(1, place + 1, end)
-    return found
 
 
 def _differences(old: bytes | bytearray, new: bytes | bytearray) -> list[int]:
@@ -371,9 +287,3 @@ def _less(some: list[int], others: list[int]) -> list[int]:
     """Give those of some that are not among the others."""
     known = set(others)
     return [each for each in some if each not in known]
-
-
-def _as_pairs(codes: Slots, stride: int) -> list[Pair]:
-    codes.sort()
-    i, j = np.divmod(codes, stride)
-    return list(zip(i.tolist(), j.tolist(), strict=True))

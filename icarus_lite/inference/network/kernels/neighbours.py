@@ -11,7 +11,7 @@ from icarus_lite.inference.network.kernels.relation import Pair
 from icarus_lite.inference.network.kernels.sweep import Stretch, candidates
 from icarus_lite.inference.network.kernels.tester import AxisPlan, Slots, Tester, Truths
 
-_FEW_STRIPS = 4
+FEW_STRIPS = 4
 """A sweep is of use if the objects spread over at least so many strips."""
 
 
@@ -30,6 +30,9 @@ def neighbours(tester: Tester) -> tuple[Slots, Slots] | None:
     left, right = tester.left, tester.right
     mine = left.ready_arrays()
     theirs = mine if tester.mirrored else right.ready_arrays()
+    # One half says it all only where both sides lie in the same cells; a rule that compares the
+    # height of one with the length of the other, and the other way round, is symmetric as well.
+    halved = tester.mirrored and all(axis.left == axis.right for axis in tester.plan.axes)
     own = others = None
     if not tester.is_regular:
         own, others = np.flatnonzero(left.regular()), np.flatnonzero(right.regular())
@@ -38,14 +41,14 @@ def neighbours(tester: Tester) -> tuple[Slots, Slots] | None:
     i = j = np.zeros(0, dtype=np.intp)
     if len(mine[0]) and len(theirs[0]):
         axes = [_stretch(axis, mine, theirs) for axis in tester.plan.axes]
-        found = candidates(axes, _FEW_STRIPS, mirrored=tester.mirrored)
+        found = candidates(axes, FEW_STRIPS, mirrored=halved)
         if found is None:
             return None
         i, j = found
         given = [*(each.take(i) for each in mine), *(each.take(j) for each in theirs)]
         if own is not None and others is not None:
             i, j = own[i], others[j]
-        i, j = _tested(tester, i, j, given)
+        i, j = _tested(tester, i, j, given, halved=halved)
     odd = _odd_pairs(tester)
     if odd:
         i = np.concatenate([i, np.array([a for a, _ in odd], dtype=np.intp)])
@@ -61,8 +64,10 @@ def _stretch(axis: AxisPlan, mine: Sequence[Numbers], theirs: Sequence[Numbers])
     return Stretch(mine[axis.left], theirs[axis.right], max(axis.reach(limit), 0.0))
 
 
-def _tested(tester: Tester, i: Slots, j: Slots, given: Sequence[Numbers]) -> tuple[Slots, Slots]:
-    """Give those of the candidates that hold, and their mirror images if there are any."""
+def _tested(
+    tester: Tester, i: Slots, j: Slots, given: Sequence[Numbers], *, halved: bool
+) -> tuple[Slots, Slots]:
+    """Give those of the candidates that hold, and their mirror images if these were left out."""
     hold, doubt = tester.mask(given)
     plan = tester.plan
     if plan.distinct:
@@ -74,7 +79,7 @@ def _tested(tester: Tester, i: Slots, j: Slots, given: Sequence[Numbers]) -> tup
         for place in np.flatnonzero(doubt).tolist():
             hold[place] = tester.is_exactly(int(i[place]), int(j[place]), on_left=True)
     i, j = i[hold], j[hold]
-    if tester.mirrored:
+    if halved:
         off = i != j
         i, j = np.concatenate([i, j[off]]), np.concatenate([j, i[off]])
     return i, j

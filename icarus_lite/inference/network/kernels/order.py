@@ -11,22 +11,27 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_left, bisect_right
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from icarus_lite.inference.network.kernels.columns import Columns, Numbers
 from icarus_lite.inference.network.kernels.costs import Costs
+from icarus_lite.inference.network.kernels.crossing import crossed, is_below, net
 from icarus_lite.inference.network.kernels.exact import ExactTest
 from icarus_lite.inference.network.kernels.keys import Keys
-from icarus_lite.inference.network.kernels.relation import Bind, Change, Pair, PairRelation
+from icarus_lite.inference.network.kernels.relation import (
+    Bind,
+    Change,
+    Pair,
+    PairRelation,
+    pairs_at,
+)
 from icarus_lite.inference.network.kernels.side import Side, SidePlan
 
-Slots = NDArray[np.intp]
-_Edge = Literal["left", "right"]
+_Cut = Callable[[list[float], float], int]
+_Passed = list[tuple[int, list[int]]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +75,9 @@ class OrderRelation(PairRelation):
         "_bind",
         "_count",
         "_distinct",
+        "_every",
         "_exact",
+        "_held",
         "_left",
         "_left_keys",
         "_odd",
@@ -95,6 +102,8 @@ class OrderRelation(PairRelation):
         self._right_keys = Keys(-math.inf)
         self._odd: frozenset[Pair] = frozenset()
         self._count = 0
+        self._held: bytes | None = None  # what held when all keys were last compared with all
+        self._every: tuple[tuple[int, int], bool] | None = None
 
     def __len__(self) -> int:
         return self._count + len(self._odd)
@@ -152,6 +161,7 @@ class OrderRelation(PairRelation):
         self._refresh(range(self._left.columns.size), range(self._right.columns.size))
         self._odd = self._odd_pairs()
         f, g = self._fresh_keys(self._left, left=True), self._fresh_keys(self._right, left=False)
+        self._held = None
         ranked = np.sort(g)
         below = np.searchsorted(ranked, f, side="right" if self._strict else "left")
         self._count = int((len(ranked) - below).sum())
@@ -175,12 +185,53 @@ class OrderRelation(PairRelation):
         if by_move <= min(by_every, by_sort):
             added, removed = self._by_move(changed_left, changed_right)
         else:
-            added, removed = self._by_array(every=by_every < by_sort)
+            f = self._fresh_keys(self._left, left=True)
+            g = self._fresh_keys(self._right, left=False)
+            added, removed = self._by_matrix(f, g) if by_every < by_sort else self._by_sort(f, g)
         self._count += len(added) - len(removed)
         if odd or self._odd:
             gained, lost = {*added, *(odd - self._odd)}, {*removed, *(self._odd - odd)}
             added, removed = sorted(gained - lost), sorted(lost - gained)
             self._odd = odd
+        return added, removed
+
+    # Followed by others.
+
+    @property
+    def sides(self) -> tuple[Side, Side]:
+        """What the tests read of the left and of the right objects."""
+        return self._left, self._right
+
+    def is_ordinary(self, columns: Columns) -> bool:
+        """Whether nothing is unusual that keeps others from following moves of these objects."""
+        return not self._odd and all(
+            side.is_ordinary(moving=side.columns is columns) for side in self.sides
+        )
+
+    def moved(self, left: Sequence[int], right: Sequence[int]) -> Change:
+        """Follow a few ordinary objects whose keys are in the lists of the sides already."""
+        added, removed = self._by_move(left, right)
+        self._count += len(added) - len(removed)
+        return added, removed
+
+    def replaced(self, f: Numbers, g: Numbers) -> Change:
+        """Follow all objects, each of them ordinary.
+
+        Args:
+            f: (left,) what is compared of each left object.
+            g: (right,) likewise of each right one.
+        """
+        if not self._plan.ascending:
+            f, g = -f, -g
+        elif f.base is not None or g.base is not None:  # they belong to columns that will change
+            f, g = f.copy(), g.copy()
+        size = len(f), len(g)
+        if self._every is None or self._every[0] != size:
+            costs = self._plan.costs
+            every = costs.every_key(size[0] * size[1]) < costs.sorted_keys(size[0] + size[1])
+            self._every = size, every
+        added, removed = self._by_matrix(f, g) if self._every[1] else self._by_sort(f, g)
+        self._count += len(added) - len(removed)
         return added, removed
 
     def _refresh(self, changed_left: Sequence[int], changed_right: Sequence[int]) -> None:
@@ -201,35 +252,41 @@ class OrderRelation(PairRelation):
 
     def _by_move(self, changed_left: Sequence[int], changed_right: Sequence[int]) -> Change:
         """Find the partners between the old and the new key, left objects first."""
-        f, g = self._left_keys, self._right_keys
+        self._held = None
+        f, g, strict = self._left_keys, self._right_keys, self._strict
         f.rank()
         g.rank()
-        added: list[Pair] = []
-        removed: list[Pair] = []
-        fresh, cut = self._left.ready_lists()[0], bisect_right if self._strict else bisect_left
-        for i in changed_left:
-            key = self._key(self._left, fresh, i, f.none)
-            if key != f.values[i]:
-                old, new = cut(g.ranked, f.values[i]), cut(g.ranked, key)
-                if new > old:
-                    removed += [(i, j) for j in g.slots[old:new]]
-                elif new < old:
-                    added += [(i, j) for j in g.slots[new:old]]
-                f.set(i, key)
-        fresh, cut = self._right.ready_lists()[0], bisect_left if self._strict else bisect_right
+        cut = bisect_right if strict else bisect_left
+        up, down = self._passed(self._left, changed_left, f, g, cut)
+        removed: list[Pair] = [(i, j) for i, others in up for j in others]
+        added: list[Pair] = [(i, j) for i, others in down for j in others]
         before, gone = len(added), len(removed)
-        for j in changed_right:
-            key = self._key(self._right, fresh, j, g.none)
-            if key != g.values[j]:
-                old, new = cut(f.ranked, g.values[j]), cut(f.ranked, key)
-                if new > old:
-                    added += [(i, j) for i in f.slots[old:new]]
-                elif new < old:
-                    removed += [(i, j) for i in f.slots[new:old]]
-                g.set(j, key)
+        cut = bisect_left if strict else bisect_right
+        up, down = self._passed(self._right, changed_right, g, f, cut)
+        added += [(i, j) for j, others in up for i in others]
+        removed += [(i, j) for j, others in down for i in others]
         if (before and len(removed) > gone) or (gone and len(added) > before):
-            added, removed = _net(added, removed)
+            added, removed = net(added, removed)
         return self._apart(added), self._apart(removed)
+
+    def _passed(
+        self, side: Side, changed: Sequence[int], keys: Keys, others: Keys, cut: _Cut
+    ) -> tuple[_Passed, _Passed]:
+        """Give changed objects their new keys; give whom each has passed, upwards and downwards."""
+        up: _Passed = []
+        down: _Passed = []
+        fresh, values, ranked = side.ready_lists()[0], keys.values, others.ranked
+        is_plain = self._plan.ascending and side.is_regular
+        for slot in changed:
+            key = fresh[slot] if is_plain else self._key(side, fresh, slot, keys.none)
+            if key != values[slot]:
+                old, new = cut(ranked, values[slot]), cut(ranked, key)
+                if new > old:
+                    up.append((slot, others.slots[old:new]))
+                elif new < old:
+                    down.append((slot, others.slots[new:old]))
+                keys.set(slot, key)
+        return up, down
 
     def _apart(self, pairs: list[Pair]) -> list[Pair]:
         if not self._distinct or not pairs:
@@ -240,59 +297,42 @@ class OrderRelation(PairRelation):
 
     # All at once.
 
-    def _by_array(self, *, every: bool) -> Change:
-        """Compare all old keys with all new ones, every pair or by sorting."""
+    def _by_matrix(self, f: Numbers, g: Numbers) -> Change:
+        """Compare all keys with all, and what holds now with what held before."""
+        new = is_below(f[:, None], g, strict=self._strict)
+        now, before = new.tobytes(), self._held
+        if before is None or len(before) != len(now):
+            old = is_below(
+                self._left_keys.array()[:, None], self._right_keys.array(), strict=self._strict
+            )
+            before = old.tobytes()
+        self._left_keys.replace(f)
+        self._right_keys.replace(g)
+        self._held = now
+        if now == before:
+            return [], []
+        flat = new.ravel()
+        codes = (flat != np.frombuffer(before, dtype=np.bool_)).nonzero()[0]
+        added, removed = pairs_at(codes, flat[codes], len(g))
+        return self._apart(added), self._apart(removed)
+
+    def _by_sort(self, f: Numbers, g: Numbers) -> Change:
+        """Sort the keys, and find out which old and new ones have changed places."""
         f_old, g_old = self._left_keys.array(), self._right_keys.array()
-        f, g = self._fresh_keys(self._left, left=True), self._fresh_keys(self._right, left=False)
-        if every:
-            old, new = self._compare(f_old[:, None], g_old), self._compare(f[:, None], g)
-            i, j = np.nonzero(old != new)
-            gained = new[i, j]
-        else:
-            i, j = self._crossed(f_old, g_old, f, g)
-            gained = self._compare(f[i], g[j])
+        i, j = crossed((f_old, g_old), (f, g), strict=self._strict)
+        gained = is_below(f[i], g[j], strict=self._strict)
         if self._same and self._distinct:
             apart = i != j
             i, j, gained = i[apart], j[apart], gained[apart]
-        for keys, values in ((self._left_keys, f), (self._right_keys, g)):
-            keys.replace(values)
+        self._held = None
+        self._left_keys.replace(f)
+        self._right_keys.replace(g)
         lost = ~gained
         added = list(zip(i[gained].tolist(), j[gained].tolist(), strict=True))
         removed = list(zip(i[lost].tolist(), j[lost].tolist(), strict=True))
         if self._same:
             return added, removed
         return self._apart(added), self._apart(removed)
-
-    def _compare(self, f: Numbers, g: Numbers) -> NDArray[np.bool_]:
-        return f < g if self._strict else f <= g
-
-    def _crossed(
-        self, f_old: Numbers, g_old: Numbers, f: Numbers, g: Numbers
-    ) -> tuple[Slots, Slots]:
-        """Give the pairs of which the answer has changed.
-
-        Either it changes when the left key moves among the old right keys, or when the right key
-        moves among the new left keys; if both, it has not changed.
-        """
-        low: _Edge = "right" if self._strict else "left"
-        high: _Edge = "left" if self._strict else "right"
-        order = np.argsort(g_old)
-        ranked = g_old[order]
-        i, place = _between(
-            np.searchsorted(ranked, f_old, side=low), np.searchsorted(ranked, f, side=low)
-        )
-        j = order[place]
-        net = self._compare(f_old[i], g_old[j]) != self._compare(f[i], g[j])
-        i, j = i[net], j[net]
-        order = np.argsort(f)
-        ranked = f[order]
-        second, place = _between(
-            np.searchsorted(ranked, g_old, side=high), np.searchsorted(ranked, g, side=high)
-        )
-        first = order[place]
-        at_first = self._compare(f_old[first], g_old[second])
-        net = at_first == self._compare(f[first], g_old[second])
-        return np.concatenate([i, first[net]]), np.concatenate([j, second[net]])
 
     def _fresh_keys(self, side: Side, *, left: bool) -> Numbers:
         """Give the new key of each slot."""
@@ -334,24 +374,3 @@ class OrderRelation(PairRelation):
         if is_one and self._plan.distinct_first:
             return False
         return self._exact(left, right) and not is_one
-
-
-def _net(added: list[Pair], removed: list[Pair]) -> Change:
-    """Leave out the pairs that were gained and lost again."""
-    both = set(added).intersection(removed)
-    if not both:
-        return added, removed
-    return (
-        [pair for pair in added if pair not in both],
-        [pair for pair in removed if pair not in both],
-    )
-
-
-def _between(old: Slots, new: Slots) -> tuple[Slots, Slots]:
-    """Give who has moved past what: each index with each place between its old and new one."""
-    who = np.flatnonzero(old != new)
-    low = np.minimum(old[who], new[who])
-    counts = np.abs(old[who] - new[who])
-    total = int(counts.sum())
-    skipped = low - (np.cumsum(counts) - counts)
-    return np.repeat(who, counts), np.arange(total, dtype=np.intp) + np.repeat(skipped, counts)

@@ -181,17 +181,22 @@ def write_program(
     return Program(source, made[0], made[1], found.get("mask"))
 
 
-def _execute(source: str) -> dict[str, Any]:
-    """Run generated definitions; a traceback or profiler finds their lines by `linecache`."""
-    filename = f"<pair kernel {blake2b(source.encode(), digest_size=6).hexdigest()}>"
-    linecache.cache[filename] = (len(source), None, source.splitlines(keepends=True), filename)
-    space: dict[str, Any] = {
+def helpers() -> dict[str, Any]:
+    """Give what generated code calls, by name."""
+    return {
         "np": np,
         "dist": math.dist,
         "sqrt": math.sqrt,
         "checked": checked,
         **{name: FUNCTIONS[word].implementation for word, name in HELPERS.items()},
     }
+
+
+def _execute(source: str) -> dict[str, Any]:
+    """Run generated definitions; a traceback or profiler finds their lines by `linecache`."""
+    filename = f"<pair kernel {blake2b(source.encode(), digest_size=6).hexdigest()}>"
+    linecache.cache[filename] = (len(source), None, source.splitlines(keepends=True), filename)
+    space = helpers()
     exec(compile(source, filename, "exec"), space)  # noqa: S102 # the text is generated here
     return space
 

@@ -6,6 +6,9 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Sequence
 from typing import TypeAlias
 
+import numpy as np
+from numpy.typing import NDArray
+
 from icarus_lite.inference.network.kernels.columns import Columns
 from icarus_lite.inference.network.kernels.exact import ExactTest
 from icarus_lite.inference.network.kernels.side import Gate
@@ -22,6 +25,31 @@ Bound: TypeAlias = tuple[ExactTest, tuple[Gate | None, Gate | None]]
 
 Bind: TypeAlias = Callable[[tuple[Columns, Columns]], Bound]
 """Gives the exact test and the gates over columns."""
+
+
+_MANY_CODES = 50
+"""From so many on codes are taken apart by numpy."""
+
+
+def pairs_at(codes: NDArray[np.intp], gained: NDArray[np.bool_], width: int) -> Change:
+    """Give the pairs that stand at some places of a matrix: those gained, and those lost.
+
+    Args:
+        codes: (n,) the places, row by row.
+        gained: (n,) whether the pair there is gained.
+        width: The length of a row.
+    """
+    added: list[Pair] = []
+    removed: list[Pair] = []
+    if len(codes) < _MANY_CODES:
+        for code, kind in zip(codes.tolist(), gained.tolist(), strict=True):
+            (added if kind else removed).append(divmod(code, width))
+        return added, removed
+    i, j = np.divmod(codes, width)
+    lost = ~gained
+    added += zip(i[gained].tolist(), j[gained].tolist(), strict=True)
+    removed += zip(i[lost].tolist(), j[lost].tolist(), strict=True)
+    return added, removed
 
 
 class PairRelation(ABC):

@@ -96,6 +96,39 @@ class Side:
         self._pending: list[int] | None = None  # None: the arrays are to be made anew
 
     @property
+    def derived(self) -> list[list[float]]:
+        """The derived inputs as lists, one value a slot; `derive_again` where others write them."""
+        return self._derived
+
+    def is_ordinary(self, *, moving: bool) -> bool:
+        """Whether nothing about its objects is unusual, so that moves may be followed elsewhere.
+
+        Args:
+            moving: Whether it is these objects that move.
+        """
+        if self.absent or self.odd or self._is_strict or self.gate is not None:
+            return False
+        if self._own and not self.columns.unusual:
+            self._rejoin()
+        behind = self.size != self.columns.size
+        return not (behind or (moving and (self._own or self.columns.unusual)))
+
+    def _rejoin(self) -> None:
+        """Read attributes from the columns again, in which every value is a number now."""
+        self._own = False
+        for place, term in enumerate(self._plan.inputs.plain):
+            source = self._attributes[self._plan.inputs.variables.index(term.name)]
+            self.lists[place] = source
+
+    def derive_again(self) -> None:
+        """Compute all derived inputs anew: others have followed moves in its place."""
+        if self._derived:
+            self._lists_fresh = True
+            self._pending = None
+            self._derive(range(self.size))
+            self.ready_lists()  # groups read the lists themselves
+
+    @property
     def is_regular(self) -> bool:
         """Whether every slot has a present object that the kernels may be trusted with."""
         return not self.absent and not self.odd

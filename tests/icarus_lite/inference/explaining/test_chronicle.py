@@ -134,3 +134,25 @@ def test_periods_are_the_cycles_in_which_it_was_held(history: list[frozenset[Bel
         assert told == {cycle for cycle, held in enumerate(history) if belief in held}
     asked = dict(chronicle.matching(parse_atom("(p ?x)")))
     assert set(asked) == set[Belief]().union(*history)
+
+
+def test_what_was_over_long_ago_is_forgotten() -> None:
+    short, whole = Chronicle(changes_kept=10), Chronicle()
+    p, q, r = (Belief("p", (name,)) for name in "abc")
+    held = frozenset[Belief]()
+    for cycle in range(60):
+        now = frozenset([r, p] if cycle % 2 else [r, *([q] if cycle < 3 else [])])
+        outcomes = [Outcome(Action("push", (cycle,)))] if cycle % 3 == 0 else []
+        for each in (short, whole):
+            each.record(cycle, sorted(now - held, key=str), held - now, outcomes, ["a"])
+        held = now
+    assert short.first > 40
+    assert short.periods(r) == whole.periods(r) == (Period(0),)
+    assert short.periods(q) == ()
+    assert short.periods(p) == tuple(
+        each for each in whole.periods(p) if (each.last or 60) >= short.first - 1
+    )
+    assert [cycle for cycle, _ in short.reports()] == [
+        cycle for cycle, _ in whole.reports() if cycle >= short.first
+    ]
+    assert [belief for belief, _ in short.matching(parse_atom("(p ?x)"))] == [r, p]

@@ -416,3 +416,18 @@ def test_attributes_in_recursion_do_not_depend_on_history() -> None:
     assert circle["(above a a)"] == 4
     assert len(net.supports(Belief("above", ("a", "a")))) == 1
     assert see(net) == {}
+
+
+@pytest.mark.parametrize("movers", [("c",), ("b", "c"), ("b", "c", "d", "e")])
+def test_objects_of_two_types_with_one_name_are_the_same_object(movers: tuple[str, ...]) -> None:
+    net = network("""
+        (percepts (lamp ^x) (spot ^x))
+        (concepts
+          ((lit-by ?a ?b)
+           :elements ((spot ?a ^x ?xa) (lamp ?b ^x ?xb))
+           :tests ((/= ?a ?b) (< (abs (- ?xa ?xb)) 2))))""")
+    spots = [Percept("spot", name, {"x": 5}) for name in "bcde"]
+    net.update(Delta((*spots, Percept("lamp", "c", {"x": 0}))))
+    assert texts(net.beliefs()) == []
+    net.move("spot", movers, {"x": [1] * len(movers)})
+    assert texts(net.beliefs()) == [f"(lit-by {name} c)" for name in movers if name != "c"]

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from icarus_lite.inference.network.kernels import Columns
-from icarus_lite.inference.network.kernels.columns import PLAIN, is_plain
+from icarus_lite.inference.network.kernels.columns import PLAIN, first_of_run, is_plain
 
 
 def table(*rows: tuple[str, float, float]) -> Columns:
@@ -14,6 +14,16 @@ def table(*rows: tuple[str, float, float]) -> Columns:
     for name, *values in rows:
         columns.put(name, values)
     return columns
+
+
+def move(columns: Columns, slots: list[int], moved: dict[str, np.ndarray]) -> None:
+    """Set some attributes of objects, as a table does."""
+    for attribute, values in moved.items():
+        given = tuple(values.tolist())
+        plain = all(map(is_plain, given))
+        place = columns.places[attribute]
+        columns.assign(slots, [(place, given)], first_of_run(slots), plain=plain)
+    columns.judge(slots)
 
 
 def test_an_object_keeps_its_slot_and_its_values_are_those_put_last() -> None:
@@ -78,22 +88,22 @@ def test_large_numbers_that_add_up_are_usual_one_by_one() -> None:
 def test_arrays_may_be_handed_over_for_many_objects() -> None:
     columns = table(*((f"o{n}", n, 0) for n in range(40)))
     slots = list(range(5, 30))
-    columns.move(slots, {"x": np.arange(25), "y": np.linspace(0, 1, 25)})
+    move(columns, slots, {"x": np.arange(25), "y": np.linspace(0, 1, 25)})
     assert columns.column("x")[4:8] == [4, 0, 1, 2]
     assert type(columns.column("x")[5]) is int
     assert columns.column("y")[29] == columns.array("y")[29] == 1.0
-    columns.move([9, 3], {"x": np.array([1.5, 2.5])})
+    move(columns, [9, 3], {"x": np.array([1.5, 2.5])})
     assert (columns.column("x")[9], columns.column("x")[3]) == (1.5, 2.5)
     assert columns.array("x")[[9, 3]].tolist() == [1.5, 2.5]
 
 
 def test_an_array_with_a_value_too_large_makes_its_object_unusual() -> None:
     columns = table(("a", 1, 2), ("b", 3, 4), ("c", 5, 6))
-    columns.move([0, 2], {"x": np.array([2**60, 7])})
+    move(columns, [0, 2], {"x": np.array([2**60, 7])})
     assert columns.unusual == {0}
     assert columns.column("x") == [2**60, 3, 7]
     assert columns.array("x").tolist() == [0.0, 3.0, 7.0]
-    columns.move([0], {"x": np.array([1])})
+    move(columns, [0], {"x": np.array([1])})
     assert columns.unusual == set()
     assert columns.array("x").tolist() == [1.0, 3.0, 7.0]
 
@@ -137,7 +147,7 @@ def test_lists_and_arrays_say_the_same_whatever_happens(steps: list[tuple]) -> N
             columns.drop(name)
             del model[name]
         elif word == "move" and name in model:
-            columns.move([columns.slot(name)], {"x": np.array([rest[1]])})
+            move(columns, [columns.slot(name)], {"x": np.array([rest[1]])})
             model[name][0] = rest[1]
         elif word == "settle":
             columns.settle()

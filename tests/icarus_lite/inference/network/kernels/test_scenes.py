@@ -20,6 +20,7 @@ from icarus_lite.inference.network.kernels import (
     compile_pair,
     python_source,
 )
+from icarus_lite.inference.network.kernels.columns import first_of_run, is_plain
 from icarus_lite.inference.network.kernels.matrix import MatrixRelation
 from icarus_lite.inference.network.kernels.order import OrderRelation
 from icarus_lite.language import parse_domain
@@ -39,6 +40,16 @@ STEEP = "(/= ?xa ?xb) (< (abs (/ (- ?ya ?yb) (- ?xa ?xb))) 0.4)"
 UNBOUNDED = "(< (+ ?xa ?yb) (+ ?xb ?ya)) (or (not (= ?za ?zb)) (< ?wa ?wb))"
 
 Row = tuple[float, float, float, float]
+
+
+def move(columns: Columns, slots: list[int], moved: dict[str, np.ndarray]) -> None:
+    """Set some attributes of objects, as a table does."""
+    for attribute, values in moved.items():
+        given = tuple(values.tolist())
+        plain = all(map(is_plain, given))
+        place = columns.places[attribute]
+        columns.assign(slots, [(place, given)], first_of_run(slots), plain=plain)
+    columns.judge(slots)
 
 
 def calls_of(text: str) -> tuple[Call, ...]:
@@ -174,7 +185,7 @@ def test_many_objects_may_be_moved_by_arrays(rule: str) -> None:
     slots = list(range(columns.size))
     rng = np.random.default_rng(4)
     for _ in range(3):
-        columns.move(slots, {"x": rng.integers(0, 1500, 80), "y": rng.uniform(0, 1500, 80)})
+        move(columns, slots, {"x": rng.integers(0, 1500, 80), "y": rng.uniform(0, 1500, 80)})
         relation.update(slots, slots)
         assert set(relation.pairs()) == pairs_of(columns, holds, itself=rule in ITSELF)
 

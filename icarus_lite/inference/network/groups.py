@@ -1,0 +1,33 @@
+"""Which pair rules are followed together: those that see the objects of one percept type."""
+
+from __future__ import annotations
+
+from icarus_lite.inference.network.design import Design
+from icarus_lite.inference.network.generation.module import is_filtered
+from icarus_lite.inference.network.kernels import GroupProgram, Member, compile_group
+from icarus_lite.inference.network.relations import Pairs, View
+
+
+def groups_of(design: Design) -> tuple[GroupProgram, ...]:
+    """Compile for each percept type the rules about pairs of its objects with any others.
+
+    A rule that leaves objects of the type out sees objects of its own, and follows by itself.
+    """
+    members: dict[str, list[Member]] = {}
+    for relation in design.relations:
+        if isinstance(relation, Pairs):
+            left, right = label_of(relation.left), label_of(relation.right)
+            member = Member(relation.name, relation.kernel, left, right)
+            for label, view in {left: relation.left, right: relation.right}.items():
+                if not is_filtered(view):
+                    members.setdefault(label, []).append(member)
+    groups = [compile_group(type_, own) for type_, own in members.items()]
+    return tuple(group for group in groups if group is not None)
+
+
+def label_of(view: View) -> str:
+    """Name the objects that a side of a rule sees: by their type, or by all that is asked."""
+    if not is_filtered(view):
+        return view.type
+    required = "".join(f" {name}" for name in view.required)
+    return f"{view.type} {view.constants}{required} {' '.join(map(str, view.tests))}"

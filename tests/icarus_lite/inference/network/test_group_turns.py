@@ -1,0 +1,90 @@
+"""Pair rules followed together: all objects at once, then a few, in turn."""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+
+from icarus_lite import Percept
+from icarus_lite.inference.network import CompiledDomain, Delta, compile_domain
+from icarus_lite.language import parse_domain
+
+TEXT = """
+(percepts (obj ^x ^h) (spot ^x ^h))
+(concepts
+  ((on ?a ?b)
+   :elements ((obj ?a ^x ?xa) (obj ?b ^x ?xb ^h ?hb))
+   :tests ((/= ?a ?b) (<= (abs (- ?xa (+ ?xb ?hb))) 4)))
+  ((near ?a ?b)
+   :elements ((obj ?a ^x ?xa ^h ?ha) (obj ?b ^x ?xb ^h ?hb))
+   :tests ((/= ?a ?b) (< (+ (* (- ?xa ?xb) (- ?xa ?xb)) (* (- ?ha ?hb) (- ?ha ?hb))) 900)))
+  ((left-of ?a ?b)
+   :elements ((obj ?a ^x ?xa ^h ?ha) (obj ?b ^x ?xb))
+   :tests ((/= ?a ?b) (<= (+ (* 2 ?xa) ?ha) (* 2 ?xb))))
+  ((over ?a ?s)
+   :elements ((obj ?a ^x ?xa ^h ?ha) (spot ?s ^x ?xs ^h ?hs))
+   :tests ((<= (abs (- (+ ?xa ?ha) (+ ?xs ?hs))) 9)))
+  ((beside ?a ?b) :elements ((near ?a ?b) (left-of ?a ?b) (not (on ?a ?b)))))
+"""
+
+
+@pytest.fixture(scope="module")
+def compiled() -> CompiledDomain:
+    domain, problems = parse_domain(TEXT)
+    assert domain is not None, problems
+    return compile_domain(domain)
+
+
+def percepts(there: dict[tuple[str, str], dict[str, int]]) -> tuple[Percept, ...]:
+    return tuple(Percept(type_, name, values) for (type_, name), values in there.items())
+
+
+@pytest.mark.parametrize("count", [5, 50, 130])
+@pytest.mark.parametrize("seed", range(2))
+def test_whatever_turn_many_and_few_movers_take(
+    compiled: CompiledDomain, count: int, seed: int
+) -> None:
+    draw = random.Random(seed)
+    names = {"obj": [f"o{i}" for i in range(count)], "spot": [f"s{i}" for i in range(count // 3)]}
+    there = {
+        (type_, name): {"x": draw.randrange(0, 400, 7), "h": draw.randrange(0, 60)}
+        for type_, every in names.items()
+        for name in every
+    }
+    net = compiled.network()
+    net.update(Delta(percepts(there)))
+    for _ in range(16):
+        type_ = draw.choice(("obj", "obj", "spot"))
+        every = names[type_]
+        movers = draw.sample(every, draw.choice((1, 1, max(1, len(every) // 4), len(every))))
+        attributes = draw.choice((["x"], ["h"], ["x", "h"], ["x", "h"]))
+        for name in movers:
+            there[type_, name] |= {each: draw.randrange(0, 400, 7) for each in attributes}
+        columns = {each: [there[type_, name][each] for name in movers] for each in attributes}
+        net.move(type_, movers, columns)
+        fresh = compiled.network()
+        fresh.update(Delta(percepts(there)))
+        assert net.beliefs() == fresh.beliefs()
+
+
+def test_a_rule_that_is_symmetric_across_two_attributes() -> None:
+    domain, problems = parse_domain("""
+        (percepts (obj ^w ^h))
+        (concepts
+          ((swaps ?a ?b)
+           :elements ((obj ?a ^w ?wa ^h ?ha) (obj ?b ^w ?wb ^h ?hb))
+           :tests ((/= ?a ?b)
+                   (<= (+ (* (- ?ha ?wb) (- ?ha ?wb)) (* (- ?wa ?hb) (- ?wa ?hb))) 441))))""")
+    assert domain is not None, problems
+    draw = random.Random(5)
+    for count in (3, 20, 60, 150):
+        sizes = {f"o{i}": (draw.randrange(0, 400, 7), draw.randrange(400)) for i in range(count)}
+        net = compile_domain(domain).network()
+        net.update(Delta(tuple(Percept("obj", n, {"w": w, "h": h}) for n, (w, h) in sizes.items())))
+        assert {each.args for each in net.beliefs()} == {
+            (a, b)
+            for a, (wa, ha) in sizes.items()
+            for b, (wb, hb) in sizes.items()
+            if a != b and (ha - wb) ** 2 + (wa - hb) ** 2 <= 441
+        }
