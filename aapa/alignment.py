@@ -7,14 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from aapa.costs import CENTRE, Cost, Place, Rows
+from aapa.assignment import LARGEST_FULL, Side, cheapest, cheapest_of_all
+from aapa.costs import CENTRE, Cost, Place
 from aapa.errors import AnchoringError
-from aapa.gating import cheapest_near_pairs, cheapest_of_all
 
 __all__ = ["Alignment", "Place", "align", "squared_distance"]
-
-_LARGEST_DENSE = 150 * 150
-"""Cells of a cost matrix. Beyond, looking for near pairs first is faster than filling it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,24 +65,8 @@ def align(
     """
     if not tau > 0:
         raise AnchoringError(f"tau is {tau}; it has to be above 0")
-    pairs: list[tuple[int, int]] = []
-    by_type = _by_type(detections)
-    # Types never mix, so that each is an assignment problem of its own.
-    for name, rows in _by_type(anchors).items():
-        columns = by_type.get(name)
-        if columns is None:
-            continue
-        if len(rows) == len(columns) == 1 and cost is CENTRE:
-            # The common case, where each thing has a type of its own, needs no solver.
-            row, column = rows[0], columns[0]
-            if squared_distance(anchors[row].centre, detections[column].centre) <= tau:
-                pairs.append((row, column))
-            continue
-        found = _cheapest(
-            [anchors[row] for row in rows], [detections[column] for column in columns], tau, cost
-        )
-        pairs.extend((rows[row], columns[column]) for row, column in found)
-    pairs.sort()
+    many = len(anchors) * len(detections) > LARGEST_FULL
+    pairs = (_pairs_of_many if many else _pairs_type_by_type)(anchors, detections, tau, cost)
     return Alignment(
         tuple(pairs),
         _others(len(anchors), [row for row, _ in pairs]),
@@ -112,19 +93,46 @@ def _by_type(places: Sequence[Place]) -> dict[str, list[int]]:
     return groups
 
 
-def _cheapest(
+def _pairs_type_by_type(
     anchors: Sequence[Place], detections: Sequence[Place], tau: float, cost: Cost
 ) -> list[tuple[int, int]]:
-    """Give the pairs of the capped optimum, as numbers of both sides."""
-    features = _columns(anchors, cost), _columns(detections, cost)
-    if len(anchors) * len(detections) > _LARGEST_DENSE and cost.reach is not None:
-        if cost is CENTRE:
-            return cheapest_near_pairs(features, features, tau, cost)
-        centres = _columns(anchors, CENTRE), _columns(detections, CENTRE)
-        return cheapest_near_pairs(centres, features, tau, cost)
-    costs = cost.pairs(features[0][:, None], features[1][None])
-    return [(row, column) for row, column in cheapest_of_all(costs, tau).tolist()]
+    """Give the pairs of the capped optimum among a few objects."""
+    pairs: list[tuple[int, int]] = []
+    by_type = _by_type(detections)
+    # Types never mix, so that each is an assignment problem of its own.
+    for name, rows in _by_type(anchors).items():
+        columns = by_type.get(name)
+        if columns is None:
+            continue
+        if len(rows) == len(columns) == 1 and cost is CENTRE:
+            # The common case, where each thing has a type of its own, needs no solver.
+            row, column = rows[0], columns[0]
+            if squared_distance(anchors[row].centre, detections[column].centre) <= tau:
+                pairs.append((row, column))
+            continue
+        features = [
+            np.array([cost.features(side[index]) for index in indices], dtype=np.float64)
+            for side, indices in ((anchors, rows), (detections, columns))
+        ]
+        found = cheapest_of_all(cost.pairs(features[0][:, None], features[1][None]), tau)
+        for row, column in zip(*(side.tolist() for side in found), strict=True):
+            pairs.append((rows[row], columns[column]))
+    pairs.sort()
+    return pairs
 
 
-def _columns(places: Sequence[Place], cost: Cost) -> Rows:
-    return np.array([cost.features(place) for place in places], dtype=np.float64)
+def _pairs_of_many(
+    anchors: Sequence[Place], detections: Sequence[Place], tau: float, cost: Cost
+) -> list[tuple[int, int]]:
+    """Give the pairs of the capped optimum among many objects, of all types at once."""
+    codes: dict[str, int] = {}
+    sides = []
+    for places in (anchors, detections):
+        kinds = [codes.setdefault(place[0], len(codes)) for place in places]
+        centres = np.array([place[1] for place in places], dtype=np.float64)
+        features = centres
+        if cost is not CENTRE:
+            features = np.array([cost.features(place) for place in places], dtype=np.float64)
+        sides.append(Side(np.array(kinds, dtype=np.int64), centres, features))
+    rows, columns = cheapest(sides[0], sides[1], tau, cost)
+    return list(zip(rows.tolist(), columns.tolist(), strict=True))

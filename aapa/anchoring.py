@@ -10,13 +10,14 @@ from aapa.alignment import align, squared_distance
 from aapa.anchors import Anchor
 from aapa.camera import Camera
 from aapa.costs import CENTRE
+from aapa.crowds import align_crowd, are_many
 from aapa.detections import Box, Detection
 from aapa.hierarchy import parents_of
 from aapa.hypotheses import Move, explain, move_between
 from aapa.names import NameRegister
 from aapa.parameters import AnchoringParameters
 from aapa.sightings import Sightings
-from aapa.singles import align_singles
+from aapa.singles import Aligned, align_singles
 from aapa.validation import check_camera, checked_detections
 from aapa.view import View
 
@@ -123,18 +124,56 @@ def step(
         View(parameters, camera),
     )
     reported = {detection.name: detection for detection in found if detection.name is not None}
+    if reported or state.register.bodies:
+        return _with_bodies(state, found, reported, frame)
+    seen, lost, register = _aligned(state.anchors, found, state.register, frame)
+    return _explained(state, seen, lost, (), register, frame)
+
+
+def _with_bodies(
+    state: AnchoringState,
+    found: Sequence[Detection],
+    reported: Mapping[str, Detection],
+    frame: Sightings,
+) -> AnchoringState:
+    """Give the next state where bodies report, or have reported, their own place."""
     register = state.register.with_bodies(frozenset(reported))
     old_bodies = {a.name: a for a in state.anchors if a.name in register.bodies}
     old_things = [a for a in state.anchors if a.name not in old_bodies]
     bodies = [
         frame.of_body(name, reported[name], old_bodies.get(name)) for name in sorted(reported)
     ]
-    unnamed = [detection for detection in found if detection.name is None] if reported else found
+    unnamed = [detection for detection in found if detection.name is None]
     things, lost, register = _aligned(old_things, unnamed, register, frame)
     seen = sorted([*bodies, *things], key=_by_name)
+    gone = [frame.without_report(body) for name, body in old_bodies.items() if name not in reported]
+    return _explained(state, seen, lost, gone, register, frame)
+
+
+def _explained(
+    state: AnchoringState,
+    seen: Sequence[Anchor],
+    lost: Sequence[Anchor],
+    gone: Sequence[Anchor],
+    register: NameRegister,
+    frame: Sightings,
+) -> AnchoringState:
+    """Give the next state, in which what is lost has been reasoned about.
+
+    Args:
+        state: The last one.
+        seen: The anchors that have a detection, sorted by name.
+        lost: Those that have none.
+        gone: Those given up already.
+        register: The names given so far.
+        frame: The circumstances.
+    """
+    if not lost:
+        return AnchoringState(
+            tuple(seen), tuple(sorted(gone, key=_by_name)), register, frame.number
+        )
     moves = _moves_of_parents(state.anchors, seen, frame.parents)
     explanation = explain(lost, seen, moves, frame.parents, frame.view)
-    gone = [frame.without_report(body) for name, body in old_bodies.items() if name not in reported]
     return AnchoringState(
         tuple(sorted([*seen, *explanation.kept], key=_by_name)),
         tuple(sorted([*gone, *explanation.dropped], key=_by_name)),
@@ -148,21 +187,34 @@ def _aligned(
     detections: Sequence[Detection],
     register: NameRegister,
     frame: Sightings,
-) -> tuple[list[Anchor], list[Anchor], NameRegister]:
-    """Give the anchors with a detection, old and new, those without, and the names given."""
+) -> tuple[Sequence[Anchor], Sequence[Anchor], NameRegister]:
+    """Give the anchors with a detection, sorted by name, those without, and the names given."""
     parameters = frame.parameters
-    if parameters.space == "image" and parameters.comparison is CENTRE:
-        singles = align_singles(anchors, detections, parameters.tau)
-        if singles is not None:
-            seen = [frame.of_old(*pair) for pair in singles.pairs]
-            new, register = _named(singles.appeared, anchors, register, frame)
-            return seen + new, singles.lost, register
+    aligned: Aligned | None = None
+    if parameters.comparison is CENTRE:
+        if parameters.space == "image":
+            aligned = align_singles(anchors, detections, parameters.tau)
+        if aligned is None and are_many(anchors, detections):
+            aligned = align_crowd(anchors, detections, parameters.tau, parameters.space)
+    if aligned is None:
+        aligned = _align_each(anchors, detections, frame)
+    seen = frame.of_pairs(aligned.pairs)
+    if not aligned.appeared:
+        return seen, aligned.lost, register
+    new, register = _named(aligned.appeared, anchors, register, frame)
+    return sorted(seen + new, key=_by_name), aligned.lost, register
+
+
+def _align_each(
+    anchors: Sequence[Anchor], detections: Sequence[Detection], frame: Sightings
+) -> Aligned:
+    """Align with any cost, in either space."""
     order = _order(detections)
     old = [frame.place(anchor) for anchor in anchors]
     found = [frame.place(detections[index]) for index in order]
-    alignment = align(old, found, parameters.tau, parameters.comparison)
-    seen = [
-        frame.of_old(
+    alignment = align(old, found, frame.parameters.tau, frame.parameters.comparison)
+    pairs = [
+        (
             anchors[row],
             detections[order[column]],
             squared_distance(old[row].centre, found[column].centre),
@@ -170,9 +222,12 @@ def _aligned(
         for row, column in alignment.pairs
     ]
     # New objects are numbered as the detector lists them.
-    appeared = [detections[index] for index in sorted(order[n] for n in alignment.appeared)]
-    new, register = _named(appeared, anchors, register, frame)
-    return seen + new, [anchors[index] for index in alignment.lost], register
+    appeared = sorted(order[number] for number in alignment.appeared)
+    return Aligned(
+        pairs,
+        [anchors[row] for row in alignment.lost],
+        [detections[column] for column in appeared],
+    )
 
 
 def _named(
@@ -182,12 +237,12 @@ def _named(
     frame: Sightings,
 ) -> tuple[list[Anchor], NameRegister]:
     """Give the anchors of what has appeared, and the register with their names."""
-    if not appeared:
-        return [], register
-    anchored = {anchor.name for anchor in anchors}
+    types = frame.parameters.unique_types
+    # Whether a name is taken now is asked of unique types alone.
+    anchored = {anchor.name for anchor in anchors} if types else set()
     new: list[Anchor] = []
     for detection in appeared:
-        unique = detection.type in frame.parameters.unique_types
+        unique = detection.type in types
         name, register = register.with_new(detection.type, unique=unique, anchored=anchored)
         anchored.add(name)
         new.append(frame.of_new(name, detection))

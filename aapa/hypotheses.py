@@ -19,6 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from operator import attrgetter
 from typing import NamedTuple
 
 from aapa.anchors import Anchor, AnchorStatus, anchor_of
@@ -37,6 +38,7 @@ class Move(NamedTuple):
 
 
 _AT_REST = Move()
+_by_name = attrgetter("name")
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,7 +84,8 @@ def explain(
     if not placed:
         return Explanation((), ())
     grounds = _grounds(placed, seen, parents, view)
-    maintained = {anchor.name: anchor for anchor in seen}
+    # Only a parent is looked up.
+    maintained = {anchor.name: anchor for anchor in seen} if parents else {}
     kept: list[Anchor] = []
     dropped: list[Anchor] = []
     for anchor in _parents_first(placed, parents):
@@ -107,7 +110,9 @@ def _in_this_frame(
     lost: Iterable[Anchor], moves: Mapping[str, Move], parents: Mapping[str, str], view: View
 ) -> dict[str, Anchor]:
     """Give the lost anchors, by name in order, carried along and seen from where the camera is."""
-    by_name = {anchor.name: anchor for anchor in sorted(lost, key=lambda anchor: anchor.name)}
+    by_name = {anchor.name: anchor for anchor in sorted(lost, key=_by_name)}
+    if not parents and view.is_flat:
+        return by_name
     involved = {*parents, *parents.values()}
     least = view.parameters.min_anchor_confidence
     placed: dict[str, Anchor] = {}
@@ -175,18 +180,24 @@ def _grounds(
     least = view.parameters.min_anchor_confidence
     pending = [anchor for anchor in placed.values() if anchor.confidence >= least]
     outside = {anchor.name: view.why_out_of_view(anchor.box, anchor.position) for anchor in pending}
-    standing = {anchor.name for anchor in seen}
+    standing = {anchor.name for anchor in seen} if parents else set()
     grounds: dict[str, _Ground] = {}
     front = Occluders(seen, view)
     while pending and (front or not grounds):
+        attached = {a.name for a in pending if parents.get(a.name) in standing} if parents else ()
+        asked = [a for a in pending if outside[a.name] is None and a.name not in attached]
+        occluder_of = {
+            anchor.name: occluder
+            for anchor, occluder in zip(asked, front.first_hiding_each(asked), strict=True)
+        }
         found: dict[str, _Ground] = {}
         for anchor in pending:
             reason = outside[anchor.name]
-            if parents.get(anchor.name) in standing:
+            if anchor.name in attached:
                 found[anchor.name] = _Ground(AnchorStatus.ATTACHED, "")
             elif reason is not None:
                 found[anchor.name] = _Ground(AnchorStatus.OUT_OF_VIEW, reason)
-            elif (occluder := front.first_hiding(anchor)) is not None:
+            elif (occluder := occluder_of[anchor.name]) is not None:
                 found[anchor.name] = _Ground(
                     AnchorStatus.OCCLUDED, f"{occluder} stands in front of it."
                 )
@@ -201,6 +212,8 @@ def _grounds(
 
 
 def _parents_first(placed: Mapping[str, Anchor], parents: Mapping[str, str]) -> list[Anchor]:
+    if not parents:
+        return list(placed.values())
     depths: dict[str, int] = {}
     for name in placed:
         depths[name] = 0

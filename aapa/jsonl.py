@@ -8,12 +8,15 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NoReturn
 
+import numpy as np
+
 from aapa.anchors import Anchor
+from aapa.camera import Camera
 from aapa.detections import Detection
 from aapa.errors import AnchoringError, RecordingError
-from aapa.validation import checked_detections
+from aapa.validation import check_camera, check_within, checked_detections
 
-_FRAME_KEYS = frozenset({"frame", "width", "height", "detections", "actions"})
+_FRAME_KEYS = frozenset({"frame", "width", "height", "camera", "detections", "actions"})
 _ACTION_STATUSES = ("succeeded", "failed", "running")
 
 
@@ -42,6 +45,7 @@ class RecordedFrame:
         actions: What had been done, in the order of the line.
         image_size: Width and height of the image, px, where the line tells them.
         extra: The keys of the line that mean nothing here, kept as they are.
+        camera: The camera and its pose, where the line tells them.
     """
 
     frame: int
@@ -49,6 +53,7 @@ class RecordedFrame:
     actions: tuple[RecordedAction, ...] = ()
     image_size: tuple[int, int] | None = None
     extra: Mapping[str, object] = field(default_factory=dict)
+    camera: Camera | None = None
 
 
 def read_frames(
@@ -88,8 +93,13 @@ def read_frames(
             yield frame
 
 
-def anchors_line(frame: int, anchors: Iterable[Anchor]) -> str:
+def anchors_line(frame: int, anchors: Iterable[Anchor], *, reasons: bool = False) -> str:
     """Give one line (without its end) for the anchors of a frame, in their order.
+
+    Args:
+        frame: Its number.
+        anchors: What is believed to be there.
+        reasons: Whether to tell of each why.
 
     Example:
         >>> anchors_line(3, ())
@@ -103,6 +113,7 @@ def anchors_line(frame: int, anchors: Iterable[Anchor]) -> str:
             "status": str(anchor.status),
             "parent": anchor.parent,
             "confidence": anchor.confidence,
+            **({"reason": anchor.reason} if reasons else {}),
         }
         for anchor in anchors
     ]
@@ -130,12 +141,14 @@ class _Line:
             self._refuse("the line is nested too deeply")
         if not isinstance(entry, dict):
             self._refuse(f"expected an object with the keys of a frame, found {_kind(entry)}")
+        size = self._image_size(entry)
         return RecordedFrame(
             self._integer(entry, "frame", least=0),
-            self._detections(entry),
+            self._detections(entry, size),
             tuple(self._action(item) for item in self._list(entry, "actions", default=[])),
-            self._image_size(entry),
+            size,
             {key: value for key, value in entry.items() if key not in _FRAME_KEYS},
+            self._camera(entry, size),
         )
 
     def refuse_order(self, frame: int, last: int) -> NoReturn:
@@ -145,12 +158,17 @@ class _Line:
             "frame",
         )
 
-    def _detections(self, entry: Mapping[str, object]) -> tuple[Detection, ...]:
+    def _detections(
+        self, entry: Mapping[str, object], size: tuple[int, int] | None
+    ) -> tuple[Detection, ...]:
         detections = tuple(self._detection(item) for item in self._list(entry, "detections"))
         try:
-            return checked_detections(detections, "image")
+            checked = checked_detections(detections, "image")
+            if size is not None:
+                check_within(checked, size)
         except AnchoringError as error:
             self._refuse(str(error), "detections")
+        return checked
 
     def _detection(self, item: object) -> Detection:
         if not isinstance(item, dict):
@@ -171,6 +189,28 @@ class _Line:
             None if size is None else (size[0], size[1]),
             None if item.get("name") is None else self._text(item, "name"),
         )
+
+    def _camera(self, entry: Mapping[str, object], size: tuple[int, int] | None) -> Camera | None:
+        item = entry.get("camera")
+        if item is None:
+            return None
+        if not isinstance(item, dict):
+            self._refuse(f"expected focal_px, position and rotation, found {_kind(item)}", "camera")
+        if size is None:
+            self._refuse("a camera needs the image's width and height beside it", "camera")
+        focal_px, near_m = self._number(item, "focal_px"), self._number(item, "near_m", 0.0)
+        position = self._numbers(item, "position", 3)
+        rows = self._list(item, "rotation")
+        rotation = [self._numbers({"rotation": row}, "rotation", 3) for row in rows]
+        if position is None or len(rotation) != 3 or None in rotation:
+            self._refuse("expected a position of 3 numbers and a rotation of 3 x 3", "camera")
+        axes = np.array(rotation, dtype=np.float64)
+        camera = Camera(*size, focal_px, (position[0], position[1], position[2]), axes, near_m)
+        try:
+            check_camera(camera)
+        except AnchoringError as error:
+            self._refuse(str(error), "camera")
+        return camera
 
     def _action(self, item: object) -> RecordedAction:
         if not isinstance(item, dict):
@@ -220,6 +260,12 @@ class _Line:
             self._refuse(f"expected a list of {count} numbers, found {_kind(value)}", key)
         if any(isinstance(number, bool) or not isinstance(number, int | float) for number in value):
             self._refuse(f"expected {count} numbers, found {value!r}", key)
+        return value
+
+    def _number(self, entry: Mapping[str, object], key: str, default: float | None = None) -> float:
+        value = self._present(entry, key) if default is None else entry.get(key, default)
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            self._refuse(f"expected a number, found {_kind(value)}", key)
         return value
 
     def _present(self, entry: Mapping[str, object], key: str) -> object:

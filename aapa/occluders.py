@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aapa.anchors import Anchor
-from aapa.boxes import overlaps
+from aapa.boxes import box_rows, overlaps
 from aapa.view import View
 
 _MANY = 24
@@ -26,24 +26,70 @@ class Occluders:
     def __init__(self, things: Sequence[Anchor], view: View) -> None:
         self._things = things
         self._view = view
-        self._boxes: NDArray[np.float64] | None = None
-        if len(things) >= _MANY:
-            self._boxes = np.array([thing.box for thing in things], dtype=np.float64)
 
     def __bool__(self) -> bool:
         return bool(self._things)
 
     def first_hiding(self, anchor: Anchor) -> str | None:
         """Give the name of the first thing that hides an anchor, or None if nothing does."""
+        return self._first(anchor, self._things)
+
+    def first_hiding_each(self, anchors: Sequence[Anchor]) -> list[str | None]:
+        """Give for each of some anchors the name of the first thing that hides it, or None."""
+        if len(self._things) < _MANY or not anchors:
+            return [self._first(anchor, self._things) for anchor in anchors]
+        behind, number = self._overlapping(anchors)
+        hiding: list[str | None] = [None] * len(anchors)
+        for row, index in zip(behind.tolist(), number.tolist(), strict=True):
+            if hiding[row] is None:
+                hiding[row] = self._first(anchors[row], self._things[index : index + 1])
+        return hiding
+
+    def _first(self, anchor: Anchor, things: Sequence[Anchor]) -> str | None:
+        view = self._view
+        if view.is_flat:
+            # `overlap`, written out: it is asked of every thing that may stand in front.
+            x1, y1, x2, y2 = anchor.box
+            if not (x2 > x1 and y2 > y1):
+                return None
+            margin = view.parameters.margin_px
+            right, bottom = x2 + margin, y2 + margin
+            for other in things:
+                a, b, c, d = other.box
+                if (
+                    a < right
+                    and x1 < c + margin
+                    and b < bottom
+                    and y1 < d + margin
+                    and c > a
+                    and d > b
+                ):
+                    return other.name
+            return None
         behind = (anchor.box, anchor.position)
-        for other in self._near(anchor):
-            if self._view.hides((other.box, other.position), behind):
+        for other in things:
+            if view.hides((other.box, other.position), behind):
                 return other.name
         return None
 
-    def _near(self, anchor: Anchor) -> Sequence[Anchor]:
-        if self._boxes is None:
-            return self._things
+    def _overlapping(
+        self, anchors: Sequence[Anchor]
+    ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Give the numbers of anchors and of things whose boxes overlap, in ascending order."""
         margin = self._view.parameters.margin_px
-        found = np.flatnonzero(overlaps(self._boxes, anchor.box, margin))
-        return [self._things[index] for index in found.tolist()]
+        boxes = box_rows([thing.box for thing in self._things])
+        asked = box_rows([anchor.box for anchor in anchors])
+        # Along x only what begins neither behind an anchor's end, nor a whole box before it; and
+        # a pixel more, so that rounding leaves nothing out that is then compared exactly.
+        order = np.argsort(boxes[:, 0])
+        begins = boxes[order, 0]
+        widest = (boxes[:, 2] - boxes[:, 0]).max()
+        first = np.searchsorted(begins, asked[:, 0] - margin - widest - 1, side="left")
+        counts = np.searchsorted(begins, asked[:, 2] + margin + 1, side="right") - first
+        ends = counts.cumsum()
+        behind = np.arange(len(asked)).repeat(counts)
+        number = order[(first - ends + counts).repeat(counts) + np.arange(ends[-1])]
+        hiding = overlaps(boxes[number], asked[behind], margin).nonzero()[0]
+        behind, number = behind[hiding], number[hiding]
+        sorted_ = np.lexsort((number, behind))
+        return behind[sorted_], number[sorted_]

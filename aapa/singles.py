@@ -6,30 +6,31 @@ of tau alone. Answering it without costs, matrices or copies makes plain anchori
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 from aapa.anchors import Anchor
 from aapa.detections import Detection
 
 
-class Singles(NamedTuple):
+class Aligned(NamedTuple):
     """Who is who.
 
     Args:
-        pairs: Anchors in their order, each with its detection and the squared distance, px².
+        pairs: Anchors in their order, each with its detection and the squared distance of their
+            centres, px² or m²; to be gone through once.
         lost: The anchors without a detection, in their order.
         appeared: The detections without an anchor, in their order.
     """
 
-    pairs: list[tuple[Anchor, Detection, float]]
+    pairs: Iterable[tuple[Anchor, Detection, float]]
     lost: list[Anchor]
     appeared: list[Detection]
 
 
 def align_singles(
     anchors: Sequence[Anchor], detections: Sequence[Detection], tau: float
-) -> Singles | None:
+) -> Aligned | None:
     """Match by type what is near enough in the image; None if a type occurs twice on a side.
 
     Args:
@@ -43,17 +44,24 @@ def align_singles(
     pairs: list[tuple[Anchor, Detection, float]] = []
     lost: list[Anchor] = []
     for anchor in anchors:
-        detection = left.get(anchor.type)
+        detection = left.pop(anchor.type, None)
         if detection is None:
             lost.append(anchor)
             continue
-        a, b, c, d = anchor.box
-        x1, y1, x2, y2 = detection.box
+        here, there = anchor.box, detection.box
+        if here == there:
+            pairs.append((anchor, detection, 0.0))
+            continue
+        a, b, c, d = here
+        x1, y1, x2, y2 = there
         dx, dy = (a + c) / 2 - (x1 + x2) / 2, (b + d) / 2 - (y1 + y2) / 2
         squared = dx * dx + dy * dy
         if squared <= tau:
             pairs.append((anchor, detection, squared))
-            del left[anchor.type]
         else:
             lost.append(anchor)
-    return Singles(pairs, lost, list(left.values()))
+            left[anchor.type] = detection
+    if len(left) < 2:
+        return Aligned(pairs, lost, list(left.values()))
+    # What was put back stands behind now; the detector's order counts.
+    return Aligned(pairs, lost, [each for each in detections if each.type in left])

@@ -36,6 +36,29 @@ def checked_detections(detections: Iterable[Detection], space: Space) -> tuple[D
     return result
 
 
+def check_within(detections: Iterable[Detection], image_size: tuple[int, int]) -> None:
+    """Make sure that detections are of a picture of this size.
+
+    Boxes may reach beyond its border, as those of some detectors do.
+
+    Args:
+        detections: Checked ones.
+        image_size: Width and height of the picture, px.
+
+    Raises:
+        AnchoringError: A box lies wholly outside.
+    """
+    width, height = image_size
+    for number, detection in enumerate(detections, start=1):
+        x1, y1, x2, y2 = detection.box
+        # A body reports where it is, which need not be where the camera looks.
+        if detection.name is None and (x1 > width or y1 > height or x2 < 0 or y2 < 0):
+            raise AnchoringError(
+                f"detection {number} ({detection.type}) has the box {detection.box}, outside of "
+                f"the picture of {width} x {height} px; is it of another resolution?"
+            )
+
+
 def check_camera(camera: Camera) -> None:
     """Make sure that a camera can project.
 
@@ -72,18 +95,25 @@ def _are_plain(detections: Sequence[object]) -> bool:
         if type(corners) is not tuple or len(corners) != 4:
             return False
         x1, y1, x2, y2 = corners
-        score = detection.score
+        # NaN fails every comparison.
         if not (
-            # NaN fails every comparison.
-            type(x1) is type(y1) is type(x2) is type(y2) is type(score) is float
+            type(x1) is float
+            and type(y1) is float
+            and type(x2) is float
+            and type(y2) is float
             and -most <= x1 <= x2 <= most
             and -most <= y1 <= y2 <= most
-            and 0 <= score <= 1
+        ):
+            return False
+        score, name = detection.score, detection.type
+        if not (
+            type(score) is float
+            and 0.0 <= score <= 1.0
             and detection.position is None
             and detection.size is None
             and detection.name is None
-            and type(detection.type) is str
-            and detection.type != ""
+            and type(name) is str
+            and name
         ):
             return False
     return True

@@ -25,6 +25,11 @@ class View:
     parameters: AnchoringParameters
     camera: Camera | None = None
 
+    @property
+    def is_flat(self) -> bool:
+        """Whether nothing is known of depth, so that only boxes in the image count."""
+        return self._posed is None
+
     def box_of(self, box: Box, position: Position | None, size: tuple[float, float] | None) -> Box:
         """Give the box that an object has in this image, px.
 

@@ -10,6 +10,7 @@ ablation: nothing was tuned on the videos of the table.
 from __future__ import annotations
 
 import argparse
+import math
 import random
 import time
 from collections.abc import Sequence
@@ -17,9 +18,19 @@ from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
+import numpy as np
+
+from aapa.lacater.classes import SNITCH_KEY
 from aapa.lacater.generator import DetectorNoise, Recipe, generate_dataset
 from aapa.lacater.layout import PerceptionKind
-from aapa.lacater.metric import TASKS, VideoScore, first_sighting, score_video, table_row
+from aapa.lacater.metric import (
+    TASKS,
+    VideoScore,
+    centre_distances,
+    first_sighting,
+    score_video,
+    table_row,
+)
 from aapa.lacater.models import Frame, Model, model_named
 from aapa.lacater.models.plus import BeyondAapa, Ideas
 from aapa.lacater.reading import Dataset
@@ -37,6 +48,7 @@ MODELS = (
     "aapa-6500",
     "aapa-10000",
     "aapa-plus",
+    "aapa-plus-camera",
     "aapa-plus-without-planned-end",
     "aapa-plus-without-reports",
 )
@@ -45,11 +57,14 @@ ABLATION = (
     "aapa-plus",
     "aapa-plus-without-ground",
     "aapa-plus-without-hidden-motion",
+    "aapa-plus-without-bounded",
     "aapa-plus-without-planned-end",
+    "aapa-plus-without-planned-end-without-bounded",
     "aapa-plus-without-lock",
     "aapa-plus-without-rest",
     "aapa-plus-without-geometry",
     "aapa-plus-without-reports",
+    "aapa-plus-without-reports-without-rivals",
     "aapa-plus-without-reports-without-geometry",
 )
 PAPER = {
@@ -73,23 +88,35 @@ TARGETS = {
     PerceptionKind.PP: (98.0, 93.0, 0.8),
     PerceptionKind.OD: (89.0, 82.0, None),
 }
+TROUBLED = ("aapa-10000", "aapa-plus", "aapa-plus-without-rivals")
+WORST = 5
+SNITCH_INSTANCE = "Spl_0"
 LATE_FRAMES = 10
 LOST_SHARE = 1 / 3
 
 
 @dataclass(frozen=True, slots=True)
 class Trouble:
-    """A way in which the reports of actions may be bad."""
+    """A way in which the reports of actions may be bad.
+
+    Args:
+        title: In words.
+        late: By how many frames all come too late.
+        lost: The share of the actions that are never reported.
+        nameless: They are reported without a word of what they are done with.
+    """
 
     title: str
     late: int = 0
     lost: float = 0.0
+    nameless: bool = False
 
 
 TROUBLES = (
     Trouble("all in time"),
     Trouble(f"all {LATE_FRAMES} frames late, no planned end", late=LATE_FRAMES),
     Trouble("a third of the actions never reported", lost=LOST_SHARE),
+    Trouble("all without their participants", nameless=True),
 )
 
 
@@ -160,10 +187,10 @@ def target_lines(rows: Sequence[Row], kind: PerceptionKind) -> list[str]:
 
 
 def troubled(root: Path, kind: PerceptionKind, videos: int) -> list[str]:
-    """Give the table of bad reports: aapa-10000 beside aapa-plus."""
+    """Give the table of bad reports: aapa-10000 beside aapa-plus with and without its rivals."""
     dataset = Dataset(root)
     engine = AttachmentEngine(load_domain(cater_domain()))
-    models = [model_named("aapa-10000"), model_named("aapa-plus")]
+    models = [model_named(name) for name in TROUBLED]
     lines = [
         "| Reports | Model | " + " | ".join(TASKS) + " |",
         "| --- " * (len(TASKS) + 2) + "|",
@@ -179,7 +206,7 @@ def troubled(root: Path, kind: PerceptionKind, videos: int) -> list[str]:
                 continue
             actions = spoilt(timed_actions(video.scene), trouble, name)
             reports = engine.reports(actions, perception.frames)
-            frames = [without_end(f, trouble) for f in frames_of(perception, reports)]
+            frames = [as_told(f, trouble) for f in frames_of(perception, reports)]
             for model in models:
                 boxes = run_model(model, frames, cast_of(video.scene))
                 score = score_video(boxes, snitch.astype(float), video.masks, start)
@@ -204,11 +231,74 @@ def spoilt(actions: Sequence[TimedAction], trouble: Trouble, name: str) -> list[
     return kept
 
 
-def without_end(frame: Frame, trouble: Trouble) -> Frame:
-    """Take the planned end from reports that come late: they would name a wrong one."""
+def as_told(frame: Frame, trouble: Trouble) -> Frame:
+    """Give a frame with its reports as they come.
+
+    Those that come late would name a wrong planned end, and have none. Where it is not said what
+    is done with what, the engine cannot know of any attachment either.
+    """
+    if trouble.nameless:
+        actions = tuple(replace(a, args=(), planned_end=None) for a in frame.actions)
+        return replace(frame, actions=actions, attachments=())
     if not trouble.late or not frame.actions:
         return frame
     return replace(frame, actions=tuple(replace(a, planned_end=None) for a in frame.actions))
+
+
+def bounds(root: Path) -> list[str]:
+    """Give what the distance that is left on carried frames is made of, perfect perception."""
+    dataset = Dataset(root)
+    engine = AttachmentEngine(load_domain(cater_domain()))
+    whole, seen, floor = [], [], []
+    hidden = frames = 0
+    for name in dataset.videos:
+        video = dataset.video(name)
+        perception = dataset.perception(video, PerceptionKind.PP)
+        start, snitch = first_sighting(perception), video.labels.snitch
+        carried = video.masks.carried.copy()
+        carried[:start] = False
+        if start is None or snitch is None or video.scene is None or not carried.any():
+            continue
+        reports = engine.reports(timed_actions(video.scene), perception.frames)
+        cast = cast_of(video.scene)
+        tracker = BeyondAapa(Ideas(), cast)
+        boxes, in_view = [], []
+        for frame in frames_of(perception, reports):
+            boxes.append(tracker.observe(frame) or (math.nan,) * 4)
+            container = SNITCH_INSTANCE
+            while container in tracker.parents:
+                container = tracker.parents[container]
+            in_view.append(bool((frame.classes == cast[container]).any()))
+        off = centre_distances(np.array(boxes, dtype=np.float64), snitch.astype(np.float64))
+        view = np.array(in_view) & carried
+        frames, hidden = frames + int(carried.sum()), hidden + int((carried & ~view).sum())
+        whole.append(float(off[carried].mean()))
+        if view.any():
+            seen.append(float(off[view].mean()))
+        if video.exact_boxes is not None:
+            true = video.exact_boxes[video.labels.keys.index(SNITCH_KEY)]
+            floor.append(float(centre_distances(true, snitch.astype(np.float64))[carried].mean()))
+    worst = sorted(whole, reverse=True)[:WORST]
+    half, most = np.percentile(whole, (50, 90))
+    unseen = 100 * hidden / frames
+    spread = (
+        f"- The distance is {np.mean(whole):.2f} px in the mean of {len(whole)} videos; in half of "
+        f"them it is below {half:.2f}, in nine of ten below {most:.2f}. The {WORST} worst have "
+        f"{' / '.join(f'{value:.1f}' for value in worst)}, and make {sum(worst) / len(whole):.2f} "
+        "px of the mean."
+    )
+    cause = (
+        f"- In {unseen:.1f} % of the frames nothing of the container's class is detected, and "
+        "nothing tells where it slides to. Over the frames in which it is detected the mean is "
+        f"{np.mean(seen):.2f} px."
+    )
+    lines = [spread, cause]
+    if floor:
+        lines.append(
+            "- The middle of the true box, before it is rounded, is "
+            f"{np.mean(floor):.2f} px off that of the label: so much is rounding alone."
+        )
+    return [*lines, ""]
 
 
 def speed(root: Path, kind: PerceptionKind, videos: int = 40) -> list[str]:
@@ -260,6 +350,8 @@ def main() -> int:
         found = troubled(tuning, kind, arguments.troubled_videos)
         lines += [f"### {kind.name}: the first {arguments.troubled_videos} tuning videos", ""]
         lines += found
+    lines += ["## What bounds it", "", BOUNDS, "", "Carried, perfect perception, `aapa-plus`:", ""]
+    lines += bounds(data)
     lines += ["## Speed", "", "Frames a second of processor time, one process:", ""]
     for kind in (PerceptionKind.PP, PerceptionKind.OD):
         lines += speed(tuning, kind)
@@ -287,6 +379,8 @@ to generated data:
 
 - the sizes of CATER's classes (large, medium, small cones and balls), the focal length of its
   lens and that the camera is level. Where the camera stands it finds out from the boxes;
+- `aapa-plus-camera` is told where the camera stands (by the scene file here). The others find it
+  out from the boxes, so well that little is left to gain;
 - how things speed up and slow down: the generator's own easing, which is Blender's. With another
   profile the row without the planned end is what is left;
 - that a detector whose boxes flicker cuts them to whole px, as the published files are cut, so
@@ -298,7 +392,31 @@ to generated data:
 
 TROUBLE = """A report that comes late finds the cone already on its way; one that never comes leaves
 the snitch without a container. `aapa-plus` then believes what it sees: a cone that stands where
-something vanished contains it, and what is seen to move moves."""
+something vanished contains it, and what is seen to move moves. Where it is said that something is
+done, but not with what, it weighs all cones that may contain the snitch from frame to frame;
+`without-rivals` believes in the nearest at once."""
+
+BOUNDS = """- With perfect perception a class of which one object is contained is not reported
+  at all, as in the published code: a second cone of that class slides unseen with the snitch in
+  it. With the detector, class 0 (a large blue metal cone) is never reported; the same follows.
+- Occluded, perfect perception, AAPA-10k: the paper has 90.53 with a standard error of 1.05, here
+  it is 92.06 with an error of 1.05 too. That is one standard error of the difference, and no rule
+  of the generator has to be behind it.
+- Contained and carried with the detector, AAPA-10k: contained is 3 points below the paper, carried
+  4 above. The detector's noise moves both the same way. On 170 tuning videos (contained / carried,
+  standard errors 1.2 and 2.8):
+
+| noise | contained | carried |
+| --- | --- | --- |
+| as it is | 78.69 | 70.26 |
+| no false snitches | 80.18 | 74.07 |
+| half found at 15 % seen, not 30 | 77.75 | 70.04 |
+| half found at 50 % seen | 77.46 | 68.28 |
+| misses 3 % | 77.83 | 69.38 |
+| no classes mistaken | 78.37 | 70.13 |
+
+  No one of them brings contained up and carried down, and nothing that is published asks for
+  another value; they were left as they are."""
 
 if __name__ == "__main__":
     raise SystemExit(main())

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator
+import difflib
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -32,7 +33,8 @@ def track(
             same.
         parameters: Of the anchoring; the image size comes from the frames if it is left out.
         domain: Says which actions attach what to what; None leaves the actions unused.
-        note: Told in words of each name in an action that has never been anchored.
+        note: Told in words of each action that the domain does not know, or not with so many
+            objects, and of each name in one that has never been anchored.
 
     Yields:
         Each frame's number, and the anchors of that frame, by name.
@@ -45,6 +47,8 @@ def track(
     memory, anchoring, size = Memory(), None, parameters.image_size
     last: int | None = None
     named: set[str] = set()
+    unfit: set[tuple[str, int]] = set()
+    known = {} if domain is None else _arities(domain)
     for frame in frames:
         if last is not None and frame.frame <= last:
             raise AnchoringError(
@@ -62,10 +66,15 @@ def track(
             anchoring = Anchoring(replace(parameters, image_size=size))
         pairs = memory.state.hierarchy.pairs()
         attachments = [Attachment(str(child), str(parent)) for child, parent in pairs]
-        anchors = anchoring.update(frame.detections, attachments)
+        anchors = anchoring.update(frame.detections, attachments, frame.camera)
         yield frame.frame, anchors
         if engine is not None:
             named.update(anchor.name for anchor in anchors)
+            for action in frame.actions:
+                why = _why_unfit(action, known)
+                if why and note is not None and (action.name, len(action.args)) not in unfit:
+                    unfit.add((action.name, len(action.args)))
+                    note(f"frame {frame.frame}: {why}; it attaches and detaches nothing")
             for action, name in _strangers(frame.actions, named):
                 named.add(name)
                 if note is not None:
@@ -99,6 +108,30 @@ def read_parameters(path: Path | None, tau: float | None = None) -> AnchoringPar
     if not isinstance(values, dict):
         raise UsageError(f"{path}: expected lines such as `tau: 6500`")
     return AnchoringParameters.from_mapping(values if tau is None else values | {"tau": tau})
+
+
+def _arities(domain: Domain) -> dict[str, set[int]]:
+    """Give the actions that a domain knows, and with how many objects each is done."""
+    atoms = [rule.attach for rule in domain.attachments]
+    atoms += [rule.until for rule in domain.attachments if rule.until is not None]
+    atoms += [action for skill in domain.skills for action in skill.actions]
+    known: dict[str, set[int]] = {}
+    for atom in atoms:
+        known.setdefault(atom.predicate, set()).add(len(atom.args))
+    return known
+
+
+def _why_unfit(action: RecordedAction, known: Mapping[str, Collection[int]]) -> str:
+    """Give why an action means nothing to the domain; "" where it means something."""
+    if action.name not in known:
+        near = difflib.get_close_matches(action.name, list(known), n=1)
+        hint = f" (did you mean {near[0]}?)" if near else ""
+        return f"({action.name} …) is no action of the domain{hint}"
+    if len(action.args) not in known[action.name]:
+        wanted = " or ".join(map(str, sorted(known[action.name])))
+        written = " ".join((action.name, *action.args))
+        return f"({written}) names {len(action.args)} of the {wanted} objects it is done with"
+    return ""
 
 
 def _strangers(

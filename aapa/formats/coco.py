@@ -18,7 +18,7 @@ from aapa.detections import Detection
 from aapa.errors import AnchoringError, DatasetError
 from aapa.formats.refusals import Refused, refuse
 from aapa.jsonl import RecordedFrame
-from aapa.validation import checked_detections
+from aapa.validation import check_within, checked_detections
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,6 +140,9 @@ class _Entry:
             [detection] = checked_detections(
                 [Detection(name, (x, y, x + width, y + height), score)], "image"
             )
+            size = None if images is None else images.sizes[frame]
+            if size is not None:
+                check_within([detection], size)
         except AnchoringError as error:
             raise DatasetError(str(error), path=self._path, key=self._where) from error
         return frame, detection

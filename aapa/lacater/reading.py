@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from aapa.errors import DatasetError
+from aapa.errors import AnchoringError, DatasetError
+from aapa.lacater.camera import CALIBRATION_FILE, FloorCamera, camera_at, read_camera
 from aapa.lacater.frame_lists import mask_of, read_frame_list
 from aapa.lacater.label_rules import frame_masks, perfect_perception
 from aapa.lacater.labels_file import check_resolution, read_labels
@@ -70,6 +71,21 @@ class Dataset:
         path = scene_path(self.root, name)
         return read_scene(path) if path.parent.is_dir() else None
 
+    def camera(self, scene: Scene | None) -> FloorCamera | None:
+        """Give the camera of a video: the calibration beside the labels, or what its scene says.
+
+        None where neither says it, or where the scene's camera does not look down on the floor.
+
+        Raises:
+            DatasetError: There is a calibration, but it is malformed.
+        """
+        if self._calibration is not None or scene is None or scene.camera is None:
+            return self._calibration
+        try:
+            return camera_at(scene.camera)
+        except AnchoringError:
+            return None
+
     def perception(self, video: Video, kind: PerceptionKind) -> Perception:
         """Read what a detector reported; perfect perception is derived where it has no folder.
 
@@ -91,6 +107,11 @@ class Dataset:
                 path=str(path),
             )
         return perception
+
+    @cached_property
+    def _calibration(self) -> FloorCamera | None:
+        path = self.root / CALIBRATION_FILE
+        return read_camera(path) if path.is_file() else None
 
     def _masks(self, name: str, labels: Labels, scene: Scene | None) -> FrameMasks:
         folder = frame_lists_folder(self.root)

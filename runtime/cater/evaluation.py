@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from aapa import AnchoringError
 from aapa.errors import DatasetError
+from aapa.lacater.camera import FloorCamera
 from aapa.lacater.classes import SNITCH_KEY, class_number
 from aapa.lacater.layout import PerceptionKind
 from aapa.lacater.metric import VideoScore, first_sighting, score_video
@@ -93,7 +94,8 @@ class Evaluator:
             return VideoResult(name, skipped="the snitch is never detected")
         if video.scene is None:
             return VideoResult(name, skipped="there is no scene file, and so no actions are known")
-        frames = frames_of(perception, self._reports(video.scene, perception.frames))
+        reports = self._reports(video.scene, perception.frames)
+        frames = frames_of(perception, reports, self._dataset.camera(video.scene))
         cast = cast_of(video.scene)
         scores, exact = [], []
         for model in self._models:
@@ -109,10 +111,12 @@ class Evaluator:
         return self._engine.reports(timed_actions(scene), frames)
 
 
-def frames_of(perception: Perception, reports: Sequence[FrameReports]) -> tuple[Frame, ...]:
-    """Give what a tracker is handed, frame by frame."""
+def frames_of(
+    perception: Perception, reports: Sequence[FrameReports], camera: FloorCamera | None = None
+) -> tuple[Frame, ...]:
+    """Give what a tracker is handed, frame by frame; the camera where it is known."""
     return tuple(
-        Frame(number, boxes, classes, report.actions, report.attachments)
+        Frame(number, boxes, classes, report.actions, report.attachments, camera)
         for number, (boxes, classes, report) in enumerate(
             zip(perception.boxes, perception.classes, reports, strict=True)
         )

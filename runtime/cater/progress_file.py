@@ -13,6 +13,7 @@ from collections.abc import Iterable, Mapping
 from importlib.resources import files
 from pathlib import Path
 
+from aapa.lacater.camera import CALIBRATION_FILE
 from aapa.lacater.layout import (
     exact_boxes_path,
     frame_lists_folder,
@@ -120,6 +121,7 @@ def files_digest(job: Job, video: str) -> str:
         scene_path(root, video),
         perception_path(root, video, job.perception),
         exact_boxes_path(root, video),
+        root / CALIBRATION_FILE,
     )
     return hashlib.sha256(" ".join(map(_stamp, paths)).encode()).hexdigest()[:16]
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -95,16 +94,23 @@ class Report:
         """Give what to tell of the videos left out: how many, and why."""
         if not self.skipped:
             return ()
-        lines = [f"{why}" for why in list(self.skipped.values())[:most]]
-        rest = len(self.skipped) - len(lines)
+        listed = list(self.skipped.items())[:most]
+        rest = len(self.skipped) - len(listed)
+        videos: dict[str, list[str]] = {}
+        for video, why in listed:
+            videos.setdefault(why, []).append(video)
         return (
             f"{len(self.skipped)} of {self.videos + len(self.skipped)} videos were skipped:",
-            *(
-                f"  {why} ({count} times)" if count > 1 else f"  {why}"
-                for why, count in Counter(lines).items()
-            ),
+            *(_skipped_line(why, names) for why, names in videos.items()),
             *((f"  and {rest} more; --json lists them all",) if rest else ()),
         )
+
+
+def _skipped_line(why: str, videos: Sequence[str]) -> str:
+    """Say why videos were left out, and which, where the reason does not tell it itself."""
+    if len(videos) > 1:
+        return f"  {why} ({len(videos)} times, first in {videos[0]})"
+    return f"  {why}" if videos[0] in why else f"  {videos[0]}: {why}"
 
 
 def report_of(job: Job, results: Sequence[VideoResult]) -> Report:

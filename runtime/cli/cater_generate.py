@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from PIL.Image import Image
 
     from aapa.lacater import Perception, Video
+    from aapa.lacater.camera import FloorCamera
     from aapa.lacater.generator.preview.annotation import Track
 
 
@@ -103,7 +104,11 @@ def show(
     seen = None
     if detections or model is not None:
         seen = dataset.perception(shown, PerceptionKind(perception))
-    track = None if model is None or seen is None else _track(model, shown, seen)
+    track = (
+        None
+        if model is None or seen is None
+        else _track(model, shown, seen, dataset.camera(shown.scene))
+    )
     annotator = Annotator(shown, scale, seen if detections else None, track)
     painter = Painter(reconstructed(shown.scene, shown.labels.frames), scale)
     frames = range(0, shown.labels.frames, step)
@@ -130,7 +135,7 @@ def _named(video: str, videos: Sequence[str]) -> str:
     raise UsageError(f"there is no video {name}{hint}")
 
 
-def _track(name: str, video: Video, seen: Perception) -> Track:
+def _track(name: str, video: Video, seen: Perception, camera: FloorCamera | None) -> Track:
     """Run a model on a video. Raises AnchoringError where there is no such model."""
     import numpy as np
 
@@ -148,7 +153,7 @@ def _track(name: str, video: Video, seen: Perception) -> Track:
     assert snitch is not None
     engine = AttachmentEngine(load_domain(cater_domain()))
     reports = engine.reports(timed_actions(video.scene), seen.frames)
-    boxes = run_model(model, frames_of(seen, reports), cast_of(video.scene))
+    boxes = run_model(model, frames_of(seen, reports, camera), cast_of(video.scene))
     known = np.isfinite(boxes).all(axis=1)
     agreement = np.zeros(len(boxes))
     agreement[known] = iou(boxes[known], snitch[known].astype(np.float64))

@@ -64,6 +64,9 @@ def track(  # noqa: PLR0913 - each is an option
     visible_only: Annotated[
         bool, typer.Option("--visible-only", help="Leave out what is not seen in a frame.")
     ] = False,
+    reasons: Annotated[
+        bool, typer.Option("--reasons", help="Tell of each anchor why it is believed to be there.")
+    ] = False,
     skip_malformed: Annotated[
         bool,
         typer.Option("--skip-malformed", help="Pass malformed parts over, and count them."),
@@ -89,7 +92,7 @@ def track(  # noqa: PLR0913 - each is an option
         type_name=object_type,
         refused=skipped if skip_malformed else refuse,
     )
-    lines_of = _lines_of(None if to is None else OutputFormat(to), out)
+    lines_of = _lines_of(None if to is None else OutputFormat(to), out, reasons=reasons)
     note = partial(typer.echo, err=True)
     with sink(out) as lines:
         for frame, anchors in anchored(_scored(frames, min_score), parameters, rules, note):
@@ -102,18 +105,21 @@ def track(  # noqa: PLR0913 - each is an option
 
 
 def _lines_of(
-    to: OutputFormat | None, out: Path | None
+    to: OutputFormat | None, out: Path | None, *, reasons: bool
 ) -> Callable[[int, Iterable[Anchor]], list[str]]:
     """Give what turns the anchors of a frame into lines."""
     from aapa.formats import InputFormat, MotWriter, OutputFormat, guess_format
     from aapa.jsonl import anchors_line
+    from runtime.errors import UsageError
 
     if to is None:
         mot = out is not None and guess_format(out) is InputFormat.MOT
         to = OutputFormat.MOT if mot else OutputFormat.JSONL
     if to is OutputFormat.MOT:
+        if reasons:
+            raise UsageError("MOT text has no place for reasons; write JSON Lines, with --to jsonl")
         return MotWriter().lines
-    return lambda frame, anchors: [anchors_line(frame, anchors)]
+    return lambda frame, anchors: [anchors_line(frame, anchors, reasons=reasons)]
 
 
 def _scored(frames: Iterable[RecordedFrame], least: float) -> Iterable[RecordedFrame]:

@@ -8,7 +8,7 @@ import pickle
 
 import pytest
 
-from aapa.anchors import Anchor, AnchorStatus, _Draft, anchor_of
+from aapa.anchors import Anchor, AnchorDraft, AnchorStatus, anchor_of
 
 FIELDS = ("cone-1", "cone", (1.0, 2.0, 3.0, 4.0), AnchorStatus.OCCLUDED, "case", 0.5)
 MORE = ((0.1, 0.2, 0.3), (0.01, 0.02), 7, "It stands behind.", -2)
@@ -31,4 +31,4 @@ def test_it_cannot_be_changed():
 
 def test_the_draft_has_the_fields_of_an_anchor():
     names = [field.name for field in dataclasses.fields(Anchor)]
-    assert [field.name for field in dataclasses.fields(_Draft)] == names
+    assert [field.name for field in dataclasses.fields(AnchorDraft)] == names

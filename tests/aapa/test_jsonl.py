@@ -50,6 +50,14 @@ def test_a_full_line(recording):
     assert frame.extra == {"note": {"any": ["thing"]}}
 
 
+def test_a_box_outside_of_the_picture_is_refused(recording):
+    far = {"frame": 1, "width": 320, "height": 240, "detections": [{"type": "a", "box": [400] * 4}]}
+    with pytest.raises(RecordingError, match=r":1: key 'detections': .* outside of the picture"):
+        list(read_frames(recording(far)))
+    unsized = {key: far[key] for key in ("frame", "detections")}
+    assert len(list(read_frames(recording(unsized)))) == 1
+
+
 def test_the_least_that_a_line_holds(recording):
     frames = list(
         read_frames(

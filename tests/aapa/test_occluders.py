@@ -23,7 +23,7 @@ def anchor(name, box, position=None):
 
 @given(st.lists(boxes, min_size=1, max_size=30), boxes, st.sampled_from([0.0, 2.0]))
 def test_asking_all_boxes_at_once_gives_what_asking_each_gives(many, one, margin):
-    at_once = overlaps(np.array(many), one, margin).tolist()
+    at_once = overlaps(np.array(many), np.array([one] * len(many)), margin).tolist()
     assert at_once == [overlap(box, one, margin) for box in many]
 
 
@@ -34,7 +34,22 @@ def test_many_things_hide_what_one_of_them_hides(many, one):
     behind = anchor("hidden", one)
     each = (thing for thing in things if Occluders([thing], view).first_hiding(behind))
     first = next(each, None)
-    assert Occluders(things, view).first_hiding(behind) == (None if first is None else first.name)
+    expected = None if first is None else first.name
+    assert Occluders(things, view).first_hiding(behind) == expected
+    assert Occluders(things, view).first_hiding_each([behind] * 2) == [expected] * 2
+
+
+@given(
+    st.lists(boxes, min_size=_MANY, max_size=2 * _MANY),
+    st.lists(boxes, max_size=9),
+    st.sampled_from([0.0, 2.0]),
+)
+def test_asking_for_many_gives_what_asking_for_each_gives(many, hidden, margin):
+    view = View(AnchoringParameters(margin_px=margin))
+    occluders = Occluders([anchor(f"thing-{n}", box) for n, box in enumerate(many)], view)
+    behind = [anchor(f"hidden-{n}", box) for n, box in enumerate(hidden)]
+    found = occluders.first_hiding_each(behind)
+    assert found == [occluders.first_hiding(each) for each in behind]
 
 
 @pytest.mark.parametrize("count", [3, _MANY + 3])
@@ -45,8 +60,10 @@ def test_of_those_that_overlap_only_what_is_nearer_hides(count):
     things = [anchor(f"far-{n}", box, (0.0, 0.0, 3.0 + n)) for n in range(count - 1)]
     behind = anchor("hidden", box, (0.0, 0.0, 2.0))
     assert Occluders(things, view).first_hiding(behind) is None
+    assert Occluders(things, view).first_hiding_each([behind]) == [None]
     things.append(anchor("near", box, (0.0, 0.0, 1.0)))
     assert Occluders(things, view).first_hiding(behind) == "near"
+    assert Occluders(things, view).first_hiding_each([behind, behind]) == ["near", "near"]
 
 
 def test_nothing_hides_nothing():

@@ -88,3 +88,25 @@ def test_a_place_is_the_middle_of_a_box_or_a_position():
     assert (place.type, place.centre, place.box) == ("cone", (114.0, 110.0), NEAR)
     in_space = sightings(space="base", tau=0.01).place(Detection("cone", NEAR, position=(1, 2, 3)))
     assert in_space.centre == (1, 2, 3)
+
+
+@pytest.mark.parametrize("parameters", [{}, {"position_gain": 0.5}, {"space": "base", "tau": 0.1}])
+def test_many_pairs_become_what_each_of_them_becomes(parameters):
+    detections = [
+        Detection("cone", BOX),
+        Detection("cone", NEAR, 0.5, (1.0, 2.0, 3.0), (0.1, 0.2)),
+        Detection("cone", NEAR, 0.5, (1.0, 2.0, 3.5)),
+    ]
+    olds = [
+        OLD,
+        replace(OLD, confidence=0.95, streak=-3, status=AnchorStatus.OCCLUDED, size=(1.0, 1.0)),
+        replace(OLD, confidence=1.0, position=(1.0, 2.0, 3.0), status=AnchorStatus.ATTACHED),
+    ]
+    frame = sightings({}, **parameters)
+    pairs = [
+        (old, detection, squared)
+        for old in olds
+        for detection in detections
+        for squared in (0.0, 16.0, 0.0025)
+    ]
+    assert frame.of_pairs(iter(pairs)) == [frame.of_old(*pair) for pair in pairs]

@@ -53,3 +53,13 @@ def test_a_detection_further_than_tau_is_something_new():
     at_tau, beyond = Detection("cone", (10.0, 0.0, 20.0, 10.0)), Detection("cone", (0, 20, 10, 31))
     assert align_singles([one], [at_tau], 100.0).pairs == [(one, at_tau, 100.0)]
     assert align_singles([one], [beyond], 100.0) == ([], [one], [beyond])
+
+
+def test_what_appears_keeps_the_detector_s_order():
+    # The first two are too far from their anchors, and count as new beside the third.
+    here = (0.0, 0.0, 4.0, 4.0)
+    old = [Anchor(f"{name}-1", name, here, AnchorStatus.VISIBLE) for name in ("a", "b")]
+    new = [Detection(name, (90.0, 0.0, 94.0, 4.0)) for name in ("b", "c", "a")]
+    found = align_singles(old, new, 100.0)
+    assert (found.pairs, found.lost) == ([], old)
+    assert found.appeared == new

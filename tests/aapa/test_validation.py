@@ -10,7 +10,13 @@ from hypothesis import strategies as st
 from aapa.camera import Camera
 from aapa.detections import Detection
 from aapa.errors import AnchoringError
-from aapa.validation import _are_plain, _checked, check_camera, checked_detections
+from aapa.validation import (
+    _are_plain,
+    _checked,
+    check_camera,
+    check_within,
+    checked_detections,
+)
 
 BOX = (10, 10, 30, 40)
 
@@ -103,3 +109,23 @@ def test_the_quick_look_lets_nothing_pass_that_the_close_look_refuses(box, score
         assert not _are_plain([detection])
     else:
         assert not _are_plain([detection]) or close == detection
+
+
+@pytest.mark.parametrize(
+    "box", [(321, 5, 330, 9), (5, 241, 9, 250), (-9, 5, -1, 9), (5, -9, 9, -1)]
+)
+def test_a_box_wholly_outside_of_the_picture_is_of_another_one(box):
+    detections = [Detection("cone", BOX), Detection("ball", box)]
+    with pytest.raises(
+        AnchoringError, match=r"detection 2 \(ball\) .* outside of the picture of 320"
+    ):
+        check_within(detections, (320, 240))
+
+
+@pytest.mark.parametrize("box", [(-5, -5, 0, 0), (319, 239, 330, 250), (-9, -9, 999, 999)])
+def test_a_box_may_reach_beyond_the_border(box):
+    check_within([Detection("ball", box)], (320, 240))
+
+
+def test_a_body_need_not_be_where_the_camera_looks():
+    check_within([Detection("hand", (-9, -9, -5, -5), name="hand")], (320, 240))

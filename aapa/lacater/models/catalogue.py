@@ -51,7 +51,7 @@ def _anchored(match: re.Match[str], *, use_attachments: bool) -> Model:
 
 
 def _plus(match: re.Match[str]) -> Model:
-    ideas = Ideas()
+    ideas = Ideas(camera=match["camera"] is not None)
     for name in (match["less"] or "").split("-without-")[1:]:
         ideas = ideas.without(name.replace("-", "_"))
     return Model(match[0], partial(BeyondAapa, ideas), asdict(ideas))
@@ -64,7 +64,11 @@ FAMILIES: Final = (
     Family("heuristic", "heuristic", _heuristic),
     Family("pa-TAU", f"pa-{_TAU}", partial(_anchored, use_attachments=False)),
     Family("aapa-TAU", f"aapa-{_TAU}", partial(_anchored, use_attachments=True)),
-    Family("aapa-plus[-without-IDEA]", r"aapa-plus(?P<less>(?:-without-[a-z-]+?)*)", _plus),
+    Family(
+        "aapa-plus[-camera][-without-IDEA]",
+        r"aapa-plus(?P<camera>-camera)?(?P<less>(?:-without-[a-z-]+?)*)",
+        _plus,
+    ),
 )
 """All kinds of models. TAU is in squared px, IDEA a switch of `plus.ideas`."""
 

@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 
 from aapa.anchors import Attachment
 from aapa.detections import Box
+from aapa.lacater.camera import FloorCamera
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +55,8 @@ class Frame:
         classes: (n,) class numbers, see `aapa.lacater.classes`.
         actions: What began or ended in this frame.
         attachments: (child, parent) believed after the frame before, by the scene's names.
+        camera: Where the camera stands, as far as somebody has calibrated it. A model that uses
+            it says so in its name.
     """
 
     number: int
@@ -61,6 +64,7 @@ class Frame:
     classes: NDArray[np.int64]
     actions: tuple[ActionReport, ...] = ()
     attachments: tuple[Attachment, ...] = ()
+    camera: FloorCamera | None = None
 
 
 class Tracker(Protocol):

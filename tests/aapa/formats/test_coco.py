@@ -47,6 +47,12 @@ def test_the_images_add_empty_frames_sizes_and_names(tmp_path):
     assert {f.image_size for f in frames} == {(640, 480)}
 
 
+def test_a_box_outside_of_its_image_is_of_another_resolution(tmp_path):
+    path = written(tmp_path / "r.json", [GOOD | {"bbox": [641, 20, 30, 40]}])
+    with pytest.raises(AnchoringError, match=r"outside of the picture of 640 x 480 px"):
+        list(read_coco(path, written(tmp_path / "i.json", IMAGES)))
+
+
 def test_annotations_without_scores_do_as_well(tmp_path):
     unscored = {key: value for key, value in GOOD.items() if key != "score"}
     [frame] = read_coco(written(tmp_path / "a.json", {"annotations": [unscored]}))

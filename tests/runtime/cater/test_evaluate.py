@@ -78,7 +78,8 @@ def test_the_json_document_follows_the_contract(tmp_path, dataset):
 
 
 def test_the_result_does_not_depend_on_the_number_of_workers(tmp_path, dataset):
-    job = job_for(dataset(tmp_path, 9), ("last-seen", "aapa-6500"))
+    job = job_for(dataset(tmp_path, 9), ("last-seen", "aapa-6500", "aapa-plus", "aapa-plus-camera"))
+    (tmp_path / "camera.yaml").write_text("height: 5.3\npitch_deg: 28\n", encoding="utf-8")
     alone = run(job, How(processes=1))[0].to_json()
     assert run(job, How(processes=2))[0].to_json() == alone
 
@@ -175,6 +176,30 @@ def test_a_video_that_has_changed_is_evaluated_again(tmp_path, dataset):
     assert list(report.skipped) == [first]
 
 
+def test_with_another_calibration_it_is_evaluated_anew(tmp_path, dataset):
+    job = job_for(dataset(tmp_path, 12), ("last-seen",))
+    calibration = tmp_path / "camera.yaml"
+    calibration.write_text("height: 5.3\npitch_deg: 28\n", encoding="utf-8")
+    interrupted(job)
+    calibration.write_text("height: 5.31\npitch_deg: 28\n", encoding="utf-8")
+    notes = []
+    run(job, notes=notes)
+    assert notes == []
+
+
+def test_a_wrong_calibration_ends_the_evaluation(tmp_path, dataset):
+    job = job_for(dataset(tmp_path, 1), ("last-seen",))
+    (tmp_path / "camera.yaml").write_text("height: 5.3\n", encoding="utf-8")
+    with pytest.raises(DatasetError, match=r"camera\.yaml: pitch_deg is missing"):
+        run(job)
+
+
+def test_a_model_that_needs_the_camera_says_so(tmp_path, dataset):
+    job = job_for(dataset(tmp_path, 1), ("aapa-plus-camera",))
+    with pytest.raises(AnchoringError, match=r"has to know where the camera stands"):
+        run(job)
+
+
 def test_results_of_another_domain_are_not_taken(tmp_path, dataset):
     job = job_for(dataset(tmp_path, 12), ("aapa-6500",))
     interrupted(job)
@@ -266,6 +291,7 @@ def test_videos_that_cannot_be_evaluated_are_counted_with_the_reason(tmp_path, d
     assert report.rows[0].miou["overall"].mean == clean.rows[0].miou["overall"].mean == 100
     assert len(report.to_json()["skipped"]) == 6
     assert report.skipped_lines()[0] == "6 of 8 videos were skipped:"
+    assert report.skipped_lines()[3] == "  CLEVR_new_000003: the snitch is never detected"
 
 
 def test_a_data_set_of_which_nothing_can_be_evaluated_is_an_error(tmp_path, dataset):

@@ -62,6 +62,91 @@ def test_mot_in_and_json_lines_out_name_the_type(tmp_path: Path) -> None:
     assert rows[0]["anchors"][0]["name"] == "person-1"
 
 
+def test_each_anchor_says_why_it_is_believed_to_be_there(tmp_path: Path) -> None:
+    done = track(two_walkers(tmp_path / "det.txt"), "--reasons")
+    rows = [json.loads(line) for line in done.out.splitlines()]
+    reasons = {a["name"]: a["reason"] for a in rows[2]["anchors"]}
+    assert reasons == {
+        "object-1": "It is seen 10 px from its last place.",
+        "object-2": "It is not seen and it had been seen too little to be reasoned about; "
+        "its confidence falls to 0.1.",
+    }
+    mot = track(tmp_path / "det.txt", "--reasons", "--to", "mot")
+    assert (mot.status, mot.out) == (2, "")
+    assert mot.err.startswith("MOT text has no place for reasons")
+
+
+def seen_by_a_moving_camera(path: Path, cameras: list[float]) -> Path:
+    """A plug at rest, 1 m ahead of a camera that goes along x; it is detected where it shows."""
+    lines = []
+    for frame, x in enumerate(cameras):
+        u = 160 + 300 * (0.5 - x)
+        shows = 10 <= u <= 310
+        plug = {"type": "plug", "box": [u - 9, 111, u + 9, 129], "position": [0.5, 0.0, 1.0]}
+        camera = {
+            "focal_px": 300,
+            "position": [x, 0, 0],
+            "rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
+        }
+        lines.append(
+            {
+                "frame": frame,
+                "width": 320,
+                "height": 240,
+                "camera": camera,
+                "detections": [plug] if shows else [],
+            }
+        )
+    path.write_text("\n".join(map(json.dumps, lines)) + "\n")
+    return path
+
+
+def test_the_camera_may_move_and_look_away(tmp_path: Path) -> None:
+    places = [0.5, 0.4, 0.6, 0.1, 0.8, 0.5, 2.5, 2.6, 0.9]
+    seen = seen_by_a_moving_camera(tmp_path / "seen.jsonl", places)
+    (tmp_path / "base.yaml").write_text("space: base\ntau: 0.01\n")
+    done = track(seen, "--anchoring", tmp_path / "base.yaml", "--reasons")
+    assert (done.status, done.err) == (0, "")
+    rows = [json.loads(line)["anchors"] for line in done.out.splitlines()]
+    assert [[anchor["name"] for anchor in row] for row in rows] == [["plug-1"]] * len(places)
+    assert [row[0]["status"] for row in rows[5:]] == [
+        "visible",
+        "out-of-view",
+        "out-of-view",
+        "visible",
+    ]
+    assert rows[6][0]["reason"] == "It lies outside the image."
+    # Told in the picture of the camera as it is now.
+    assert rows[6][0]["box"] == pytest.approx([-449, 111, -431, 129])
+
+
+@pytest.mark.parametrize(
+    ("camera", "reason"),
+    [
+        (7, "key 'camera': expected focal_px, position and rotation, found a number"),
+        ({"focal_px": "x"}, "key 'focal_px': expected a number, found text"),
+        ({"focal_px": 1, "rotation": []}, "expected a position of 3 numbers and a rotation of 3 x"),
+        (
+            {"focal_px": 1, "position": [0, 0, 0], "rotation": [[1, 0, 0]] * 3},
+            "the camera's rotation is not a rotation",
+        ),
+        (
+            {"focal_px": 0, "position": [0, 0, 0], "rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]},
+            "the camera's focal length is 0 px; expected above 0",
+        ),
+    ],
+)
+def test_a_malformed_camera_is_refused(tmp_path: Path, camera: object, reason: str) -> None:
+    line = {"frame": 0, "width": 320, "height": 240, "camera": camera, "detections": []}
+    path = tmp_path / "seen.jsonl"
+    path.write_text(json.dumps(line) + "\n")
+    done = track(path)
+    assert (done.status, done.out) == (2, "")
+    assert reason in done.err
+    path.write_text(json.dumps({k: v for k, v in line.items() if k != "width"}) + "\n")
+    assert track(path).status == 2
+
+
 def test_what_scores_too_low_is_left_out(tmp_path: Path) -> None:
     done = track(two_walkers(tmp_path / "det.txt"), "--min-score", "0.85", "--to", "mot")
     assert {line.split(",")[1] for line in done.out.splitlines()} == {"1"}

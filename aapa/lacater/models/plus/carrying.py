@@ -7,6 +7,7 @@ could be compared, goes with it, as large as it looks where it is.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 from aapa.detections import Box
 from aapa.lacater.models.plus.ground import GroundView, Place
@@ -16,6 +17,9 @@ Trim = tuple[float, float, float, float]
 """How far the edges of a box are off those of the ball, in units of the scene at its depth."""
 
 NO_TRIM: Trim = (0.0, 0.0, 0.0, 0.0)
+
+_FARTHEST: Final = 0.06
+"""The middle of the child's box is no farther off that of the ball, in units of the scene."""
 
 
 @dataclass(slots=True)
@@ -29,6 +33,8 @@ class Bond:
         since: The container's box when the child was bound to it, px.
         child: The child's box then, px.
         rested: The child's box when the container was last at rest, px.
+        stood: The container's box in the last frame in which it was seen, px.
+        lost: The container has not been seen since it was last compared with its place.
     """
 
     root: str
@@ -37,31 +43,36 @@ class Bond:
     since: Box
     child: Box
     rested: Box
+    stood: Box
+    lost: bool = False
 
 
-def trim_of(view: GroundView, place: Place, box: Box, share: float) -> Trim:
+def trim_of(
+    view: GroundView, place: Place, box: Box, share: float, more: tuple[float, float]
+) -> Trim:
     """Give how a box differs from the ball's at a place.
 
     Args:
         view: The camera.
         place: Where the ball is taken to be.
         box: As it was seen, px.
-        share: Which share of the difference is believed.
+        share: Which share is believed of how far the box's middle is off the ball's.
+        more: How much farther than the ball the child reaches to a side, and up and down, in
+            units of the scene.
 
     Returns:
-        No trim at all where the place is not before the camera.
+        Without the shift of the middle where the place is not before the camera.
     """
+    wide, tall = more
     try:
         a, b, c, d = view.box(SNITCH_SOLID, place)
     except ValueError:
-        return NO_TRIM
-    scale = share * view.depth(place, SNITCH_SOLID.low) / view.focal
-    return (
-        (box[0] - a) * scale,
-        (box[1] - b) * scale,
-        (box[2] - c) * scale,
-        (box[3] - d) * scale,
-    )
+        return -wide, -tall, wide, tall
+    scale = share * view.depth(place, SNITCH_SOLID.low) / view.focal / 2
+    most = _FARTHEST * share
+    across = min(max((box[0] - a + box[2] - c) * scale, -most), most)
+    down = min(max((box[1] - b + box[3] - d) * scale, -most), most)
+    return across - wide, down - tall, across + wide, down + tall
 
 
 def trimmed(view: GroundView, place: Place, trim: Trim, lift: float = 0.0) -> Box | None:

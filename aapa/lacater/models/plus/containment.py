@@ -6,6 +6,7 @@ thing is in it. No action has to be reported for that; where one is reported, th
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from typing import Final
 
@@ -20,31 +21,30 @@ FITS_PX: Final = 2.5
 """The edges of a thing on the floor are no farther than this from where they should be."""
 
 
-def container_at(
+def distances(
     view: GroundView,
     place: Place,
     radius: float,
     cones: Iterable[tuple[str, Solid, Box]],
-) -> str | None:
-    """Give the cone that stands where something vanished, the nearest of several.
+) -> dict[str, float]:
+    """Give how far from where something vanished the cones stand that could hold it.
 
     Args:
         view: The camera.
         place: Where it vanished.
         radius: Its radius; a cone that holds it is larger.
         cones: Name, solid and box, px, of those that are seen and at rest.
+
+    Returns:
+        In units of the scene; without those that are not on the floor.
     """
-    best, found = REACH, None
+    far = {}
     for name, solid, box in cones:
-        if not solid.is_cone or solid.radius <= radius:
-            continue
-        there = on_floor(view, solid, box)
-        if there is None:
-            continue
-        far = ((there[0] - place[0]) ** 2 + (there[1] - place[1]) ** 2) ** 0.5
-        if far < best:
-            best, found = far, name
-    return found
+        if solid.is_cone and solid.radius > radius:
+            there = on_floor(view, solid, box)
+            if there is not None:
+                far[name] = math.dist(there, place)
+    return far
 
 
 def on_floor(view: GroundView, solid: Solid, box: Box, fits: float = FITS_PX) -> Place | None:

@@ -12,6 +12,12 @@ from typing import Final
 from aapa.lacater.generator.motion import Profile, pick_place, slide
 from aapa.lacater.models.plus.ground import Place
 
+_SURE: Final = 4.0
+"""As so many sightings counts where it stood at first, which was seen for long."""
+
+_UNSURE: Final = 0.1
+"""The same, where it was not seen just before."""
+
 _LEAST: Final = 2e-3
 """Below this spread of the shares a way is not known well enough to be followed."""
 
@@ -24,17 +30,31 @@ class Path:
         start: Its first frame.
         end: Its last frame, as planned.
         lifted: It is picked and placed, not slid.
+        sure: It was seen where it begins just before.
     """
 
-    __slots__ = ("_across", "_ahead", "_count", "_profile", "_shares", "_squares", "end", "start")
+    __slots__ = (
+        "_across",
+        "_ahead",
+        "_count",
+        "_profile",
+        "_shares",
+        "_squares",
+        "end",
+        "lifted",
+        "start",
+    )
 
-    def __init__(self, origin: Place, start: int, end: int, *, lifted: bool) -> None:
+    def __init__(
+        self, origin: Place, start: int, end: int, *, lifted: bool, sure: bool = True
+    ) -> None:
         moves = (pick_place if lifted else slide)(end - start + 1)
         self._profile: Profile = moves.filmed
-        self.start, self.end = start, end
-        # Sums over what was seen; where it stood at first counts as one sighting.
-        self._count, self._shares, self._squares = 1.0, 0.0, 0.0
-        self._across, self._ahead = [origin[0], 0.0], [origin[1], 0.0]
+        self.start, self.end, self.lifted = start, end, lifted
+        # Sums over what was seen.
+        weight = _SURE if sure else _UNSURE
+        self._count, self._shares, self._squares = weight, 0.0, 0.0
+        self._across, self._ahead = [weight * origin[0], 0.0], [weight * origin[1], 0.0]
 
     def share(self, frame: int) -> float:
         """Give which share of the way has been gone at a frame."""

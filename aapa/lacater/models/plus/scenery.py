@@ -13,6 +13,7 @@ from typing import Final
 
 from aapa.boxes import centre_of, moved
 from aapa.detections import Box
+from aapa.errors import AnchoringError
 from aapa.lacater.models.model import Frame
 from aapa.lacater.models.plus.calibration import calibrated
 from aapa.lacater.models.plus.ground import GroundView
@@ -46,6 +47,7 @@ class Scenery:
 
     def __init__(self, ideas: Ideas, cast: Mapping[str, int], target: int) -> None:
         self._averages = ideas.rest
+        self._is_calibrated = ideas.camera
         self._target = target
         self.things = {name: Thing(number) for name, number in cast.items()}
         self._of_class: dict[int, list[str]] = {}
@@ -75,10 +77,15 @@ class Scenery:
 
         Returns:
             Whether something of the target's class is seen.
+
+        Raises:
+            AnchoringError: The camera should be given, and is not.
         """
         found: dict[int, Boxes] = {}
         for number, box in zip(frame.classes.tolist(), frame.boxes.tolist(), strict=True):
             found.setdefault(number, []).append(box)
+        if self._is_calibrated and self.view is None:
+            self.view = _given(frame)
         known = self._at_rest >= _ENOUGH
         flicker = _STEADY_PX if known and not self.is_noisy else _FLICKER_PX
         seen = False
@@ -104,6 +111,14 @@ class Scenery:
         """Whether the boxes of what is at rest differ from frame to frame."""
         return self._changed > _NOISY * self._at_rest
 
+    def seen(self) -> list[tuple[str, Box]]:
+        """Give the name and box, px, of all that is seen in this frame, but for the target."""
+        return [
+            (name, thing.last)
+            for name, thing in self.things.items()
+            if not thing.missed and thing.last is not None and thing.number != self._target
+        ]
+
     def keep_sample(self, name: str) -> None:
         """Remember the box of what is about to leave its place, for the calibration."""
         solid, box = self.solids.get(name), self.box_of(name)
@@ -114,7 +129,9 @@ class Scenery:
             self._samples.append((solid, box))
 
     def camera(self) -> GroundView | None:
-        """Give the camera, found anew where more has been seen since."""
+        """Give the camera, found anew where more has been seen since, unless it is given."""
+        if self._is_calibrated:
+            return self.view
         if self.view is None or len(self._samples) > self._sampled:
             self._sampled = len(self._samples)
             now = [
@@ -160,3 +177,13 @@ class Scenery:
             if len(names) > 1:
                 boxes = boxes[:index] + boxes[index + 1 :]
         return taken
+
+
+def _given(frame: Frame) -> GroundView:
+    if frame.camera is None:
+        raise AnchoringError(
+            "this model has to know where the camera stands, and neither camera.yaml beside "
+            "labels/ nor the scene file says so; aapa-plus finds it out by itself"
+        )
+    camera = frame.camera
+    return GroundView(camera.height, camera.pitch, camera.focal, (WIDTH, HEIGHT))

@@ -12,6 +12,9 @@ _AGREE_PX = 12.0
 _CONVINCING = 3
 _SETTLED = 4
 
+STILL = (0.0, 0.0)
+"""The pace of what does not move."""
+
 
 class Thing:
     """One object that actions may name.
@@ -30,6 +33,7 @@ class Thing:
         "missed",
         "moving",
         "number",
+        "pace",
         "roaming",
         "seen",
     )
@@ -45,6 +49,8 @@ class Thing:
         self.free = True
         """It may be seen anywhere: nobody saw where it went."""
         self.missed = 0
+        self.pace = STILL
+        """By how many px its middle moved from one sighting to the next, the last time."""
         self.seen = 0
         """How often it was seen since it came to rest."""
         self._sum = [0.0, 0.0, 0.0, 0.0]
@@ -68,12 +74,12 @@ class Thing:
 
     def set_off(self) -> None:
         """It begins to move, or may be somewhere else."""
-        self.moving, self.roaming = True, False
+        self.moving, self.roaming, self.pace = True, False, STILL
         self._forget()
 
     def come_to_rest(self) -> None:
         """It has stopped, wherever it is."""
-        self.moving, self.roaming = False, False
+        self.moving, self.roaming, self.pace = False, False, STILL
         self._forget()
 
     def offer(
@@ -127,6 +133,9 @@ class Thing:
         if self.seen and not self.moving:
             self._notice(box, flicker)
         x1, y1, x2, y2 = box
+        if self.moving and self.last is not None and not self.missed:
+            a, b, c, d = self.last
+            self.pace = (x1 + x2 - a - c) / 2, (y1 + y2 - b - d) / 2
         self.last = x1, y1, x2, y2
         self.free, self.missed, self._far_count = False, 0, 0
         if not self.moving:

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from aapa import AnchoringError, Attachment
 from aapa.lacater.generator.motion import slide
 from aapa.lacater.models.plus import Ideas
+from aapa.lacater.models.plus.appearance import Appearance
 from aapa.lacater.models.plus.belonging import Belonging
-from aapa.lacater.models.plus.containment import container_at, on_floor
+from aapa.lacater.models.plus.containment import REACH, distances, on_floor
 from aapa.lacater.models.plus.ground import GroundView
+from aapa.lacater.models.plus.hiding import behind
 from aapa.lacater.models.plus.paths import Path
+from aapa.lacater.models.plus.rivals import OUTSIDE, Rivals
 from aapa.lacater.models.plus.solids import SNITCH_SOLID, solid_of
 from aapa.lacater.models.plus.things import Thing
 
@@ -96,14 +101,85 @@ def test_reports_in_a_circle_are_refused():
         Belonging().report((Attachment("a", "b"), Attachment("b", "a")))
 
 
-def test_only_a_larger_cone_on_the_very_place_contains():
+def test_only_larger_cones_upon_the_floor_may_contain_and_are_ranked_by_their_distance():
     large, small = solid_of(0), solid_of(141)
-    at, beside = VIEW.box(large, (0.5, 9.0)), VIEW.box(large, (1.5, 9.0))
-    cones = [("at", large, at), ("beside", large, beside)]
-    assert container_at(VIEW, (0.55, 9.05), SNITCH_SOLID.radius, cones) == "at"
-    assert container_at(VIEW, (0.55, 9.05), SNITCH_SOLID.radius, cones[1:]) is None
-    tiny = [("tiny", small, VIEW.box(small, (0.5, 9.0)))]
-    assert container_at(VIEW, (0.55, 9.05), SNITCH_SOLID.radius, tiny) is None
+    place = (0.55, 9.05)
+    cones = [
+        ("at", large, VIEW.box(large, (0.5, 9.0))),
+        ("beside", large, VIEW.box(large, (1.5, 9.0))),
+        ("tiny", small, VIEW.box(small, (0.5, 9.0))),
+        ("lifted", large, VIEW.box(large, (0.5, 9.0), 0.8)),
+    ]
+    far = distances(VIEW, place, SNITCH_SOLID.radius, cones)
+    assert far == {"at": pytest.approx(0.0707, abs=1e-3), "beside": pytest.approx(0.951, abs=1e-3)}
+    assert far["at"] < REACH < far["beside"]
+
+
+def test_what_stands_on_the_place_is_believed_more_and_more_and_the_rest_less():
+    rivals = Rivals()
+    sure = []
+    for _ in range(4):
+        rivals.weigh({"at": 0.05, "beside": 0.5}, told=False)
+        ranked = rivals.ranked
+        assert ranked[0].container == "at"
+        assert sum(rival.weight for rival in ranked) == pytest.approx(1.0)
+        sure.append(ranked[0].weight)
+    assert sure == sorted(sure)
+    assert sure[0] < 0.85
+    assert sure[-1] > 0.98
+    assert [rival.container for rival in ranked] == ["at", OUTSIDE, "beside"]
+
+
+def test_evidence_turns_the_ranking_round():
+    rivals = Rivals()
+    rivals.weigh({"first": 0.1}, told=False)
+    assert rivals.ranked[0].container == "first"
+    rivals.rule_out("first")
+    assert rivals.ranked[0].container == OUTSIDE
+    rivals.weigh({"second": 0.2}, told=False)
+    assert rivals.ranked[0].container == "second"
+
+
+def test_that_something_was_set_over_something_speaks_for_what_stands_near():
+    quiet, told = Rivals(), Rivals()
+    quiet.weigh({"cone": 0.28}, told=False)
+    told.weigh({"cone": 0.28}, told=True)
+    assert told.ranked[0].weight > quiet.ranked[0].weight + 0.15
+
+
+def test_what_is_not_seen_stays_behind_what_hides_it():
+    wall = (100.0, 50.0, 160.0, 120.0)
+    hidden = (110.0, 60.0, 130.0, 80.0)
+    assert behind(hidden, [wall]) == hidden
+    beyond = (170.0, 60.0, 190.0, 80.0)
+    # It may stick out by a quarter of its own width.
+    assert behind(beyond, [wall]) == (145.0, 60.0, 165.0, 80.0)
+    far = (260.0, 60.0, 280.0, 80.0)
+    assert behind(far, [wall]) is None
+    assert behind(beyond, [(150.0, 60.0, 160.0, 70.0)]) is None
+    assert behind(beyond, [(100.0, 10.0, 180.0, 60.0)]) is None
+
+
+def test_the_size_of_the_snitch_is_learnt_from_all_that_was_seen_of_it():
+    larger = replace(SNITCH_SOLID, radius=SNITCH_SOLID.radius * 1.04)
+    looks = Appearance()
+    places = [(-1.5 + 0.37 * k, 8.0 + 0.23 * k) for k in range(9)]
+    for place in places:
+        x1, y1, x2, y2 = VIEW.box(larger, place)
+        corner = round(x1), round(y1)
+        looks.add((*corner, corner[0] + round(x2 - x1), corner[1] + round(y2 - y1)), again=False)
+    wide, tall = looks.more(VIEW, places[4])
+    real = 0.04 * SNITCH_SOLID.radius
+    assert wide == pytest.approx(real, abs=0.3 * real)
+    assert tall == pytest.approx(real, abs=0.3 * real)
+    looks.forget()
+    assert looks.more(VIEW, places[4]) == (0.0, 0.0)
+
+
+def test_what_was_seen_in_the_air_says_nothing_of_its_size():
+    looks = Appearance()
+    looks.add(VIEW.box(SNITCH_SOLID, (0.0, 9.0), 2.0), again=False)
+    assert looks.more(VIEW, (0.0, 9.0)) == (0.0, 0.0)
 
 
 def test_a_lifted_cone_is_not_on_the_floor():
