@@ -12,7 +12,16 @@ from typing import TYPE_CHECKING
 from icarus_lite._version import __version__
 
 if TYPE_CHECKING:
-    from icarus_lite.agent import Agent, Decision, DecisionKind, GoalStatus, IntentionStatus
+    from icarus_lite.agent import (
+        Agent,
+        Decision,
+        DecisionKind,
+        GoalReport,
+        GoalStatus,
+        IntentionStatus,
+        Request,
+        Standing,
+    )
     from icarus_lite.errors import FrameError, IcarusError, InferenceError, TraceError
     from icarus_lite.execution import SkillPath
     from icarus_lite.language import DomainError, load_domain
@@ -29,13 +38,16 @@ _HOMES = {
     "Failure": "planning",
     "FailureReason": "planning",
     "FrameError": "errors",
+    "GoalReport": "agent",
     "GoalStatus": "agent",
     "IcarusError": "errors",
     "InferenceError": "errors",
     "IntentionStatus": "agent",
     "Outcome": "symbols",
     "Percept": "symbols",
+    "Request": "agent",
     "SkillPath": "execution",
+    "Standing": "agent",
     "Status": "symbols",
     "TraceError": "errors",
     "Value": "symbols",
@@ -52,13 +64,16 @@ __all__ = [
     "Failure",
     "FailureReason",
     "FrameError",
+    "GoalReport",
     "GoalStatus",
     "IcarusError",
     "InferenceError",
     "IntentionStatus",
     "Outcome",
     "Percept",
+    "Request",
     "SkillPath",
+    "Standing",
     "Status",
     "TraceError",
     "Value",

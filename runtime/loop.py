@@ -10,7 +10,9 @@ from itertools import pairwise
 from typing import Protocol
 
 from aapa import Anchor, Anchoring, Attachment, Camera, Detection
-from icarus_lite import Action, Agent, Decision, DecisionKind, Outcome, Percept, Status
+from icarus_lite import Action, Agent, Decision, DecisionKind, Outcome, Percept, Request, Status
+from icarus_lite.execution import NO_ANSWER, patience_s
+from icarus_lite.planning import PlanStep
 from icarus_lite.trace import TraceWriter, cycle_record
 from runtime.config import RobotConfig
 from runtime.drivers import PARK, ArmState, Driver
@@ -177,25 +179,44 @@ class Loop:
         self._resting = _Resting.AT_LOOK_POSE
         self._waited = 0
         self._started_s = 0.0
+        self._cycles = 0
+        self._ended: LoopResult | None = None
 
     def run(self) -> LoopResult:
         """Run to the end. An interruption from the keyboard stops the arm and ends the run."""
-        cycles = 0
         try:
-            for cycles in range(1, self._limits.cycles + 1):
-                self._outcomes = self._poll()
-                report = self._cycle(self._outcomes)
-                end = self._act(report)
-                if end is not None:
-                    return self._result(end, cycles)
-            return self._result(_End(f"the goal was not reached in {cycles} cycles"), cycles)
+            result = self.step()
+            while result is None:
+                result = self.step()
+        finally:
+            if self._ended is None:
+                self._driver.stop()
+        return result
+
+    def step(self) -> LoopResult | None:
+        """Run one cycle; give the result once the run has ended, None before.
+
+        Whoever does not go on to the end stops the driver.
+        """
+        if self._ended is not None:
+            return self._ended
+        if self._cycles >= self._limits.cycles:
+            return self._end(_End(f"the goal was not reached in {self._cycles} cycles"))
+        self._cycles += 1
+        try:
+            self._outcomes = self._poll()
+            end = self._act(self._cycle(self._outcomes))
         except (ControllerError, DriverError) as error:
             self._record_loss(str(error))
-            return self._result(_End(str(error)), cycles)
+            end = _End(str(error))
         except KeyboardInterrupt:
-            return self._result(_End("interrupted by the operator; the arm was stopped"), cycles)
-        finally:
-            self._driver.stop()
+            end = _End("interrupted by the operator; the arm was stopped")
+        return None if end is None else self._end(end)
+
+    def _end(self, end: _End) -> LoopResult:
+        self._driver.stop()
+        self._ended = LoopResult(end.achieved, end.reason, self._cycles, tuple(self._actions))
+        return self._ended
 
     def _poll(self) -> tuple[Outcome, ...]:
         outcome, self._aborted = self._aborted or self._driver.poll(self._by_name()), None
@@ -231,7 +252,9 @@ class Loop:
             outcomes = (Outcome(running.action, Status.FAILED, reason),)
         decision = self._agent.cycle(self._last.percepts, outcomes)
         self._note(decision.cycle, outcomes, ())
-        lost = replace(decision, kind=DecisionKind.IMPASSE, path=(), step=None, reason=reason)
+        lost = replace(
+            decision, kind=DecisionKind.IMPASSE, path=(), step=None, reason=reason, request=None
+        )
         self._publish(replace(self._last, decision=lost, outcomes=outcomes, detections=()), {})
 
     def _publish(self, report: CycleReport, timings: dict[str, float]) -> None:
@@ -249,7 +272,9 @@ class Loop:
         self._waited = 0
         if step is None:
             return None
-        if decision.kind is DecisionKind.ACT:
+        if decision.request is not None:
+            self._stand_still(decision.request, step, report.arm.timestamp_s, decision.cycle)
+        elif decision.kind is DecisionKind.ACT:
             if self._resting is _Resting.ON_THE_WAY:
                 self._driver.stop()
             self._driver.start(step.action, step.commands, self._by_name())
@@ -262,6 +287,19 @@ class Loop:
             if limit is not None and report.arm.timestamp_s - self._started_s > limit:
                 self._abort(step.action, f"not done within {limit:g} s")
         return None
+
+    def _stand_still(self, request: Request, step: PlanStep, now_s: float, cycle: int) -> None:
+        """Keep the arm where it is while another agent does its part; give up in the end."""
+        if self._resting is _Resting.ON_THE_WAY:
+            self._driver.stop()
+            self._resting = _Resting.NO
+        if request.since == cycle:
+            self._actions.append(ActionRecord(cycle, str(step.action), "requested"))
+            self._started_s = now_s
+        limit_s = patience_s(step)
+        if now_s - self._started_s > limit_s:
+            reason = f"{NO_ANSWER} within {limit_s:g} s"
+            self._aborted = Outcome(step.action, Status.FAILED, reason)
 
     def _abort(self, action: Action, reason: str) -> None:
         self._driver.stop()
@@ -314,6 +352,3 @@ class Loop:
 
     def _by_name(self) -> dict[str, Anchor]:
         return {anchor.name: anchor for anchor in self._anchors}
-
-    def _result(self, end: _End, cycles: int) -> LoopResult:
-        return LoopResult(end.achieved, end.reason, cycles, tuple(self._actions))

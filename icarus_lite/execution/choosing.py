@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 
+from icarus_lite.execution.experience import Experience
 from icarus_lite.execution.moment import Moment
 from icarus_lite.execution.path import Aim, Level
 from icarus_lite.execution.selection import Selection
 from icarus_lite.inference import change_of
 from icarus_lite.language.syntax import Atom, Condition, Constant
-from icarus_lite.planning import FailureReason, PlanStep
+from icarus_lite.planning import FailureReason, NoPlan, PlanningDomain, PlanStep, find_plan
 from icarus_lite.symbols import Action
 
 
@@ -38,6 +40,28 @@ def path_to_goals(
         if levels is not None:
             return goal, levels
     return None
+
+
+def obstacle(
+    prepared: PlanningDomain,
+    selection: Selection,
+    goals: Sequence[Condition],
+    moment: Moment,
+    experience: Experience,
+) -> NoPlan | None:
+    """Say why neither skills nor a plan lead to some goals from here; None if something does."""
+    if path_to_goals(selection, goals, moment) is not None:
+        return None
+    found = find_plan(
+        prepared.domain,
+        moment.imagination,
+        goals,
+        excluded=list(experience.given_up),
+        prepared=prepared,
+    )
+    if not isinstance(found, NoPlan):
+        return None
+    return replace(found, reason="; ".join([found.reason, *experience.complaints]))
 
 
 def _keeping(

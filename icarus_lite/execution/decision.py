@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from icarus_lite.execution.path import SkillPath
+from icarus_lite.execution.plan_following import PlanStatus
+from icarus_lite.execution.requests import Request
 from icarus_lite.inference import BeliefState
 from icarus_lite.language.syntax import Atom, Condition
 from icarus_lite.planning import Candidate, Failure, PlanStep
@@ -20,6 +22,8 @@ class DecisionKind(StrEnum):
     ABORT = "abort"  # stop the running action: what it relied on is no longer believed
     ACHIEVED = "achieved"  # all goals are believed, all intentions carried out
     IMPASSE = "impasse"  # nothing leads to the goals; the reason says why
+    REQUEST = "request"  # ask another agent to do something, and keep still
+    AWAIT = "await"  # keep still until another agent has done something
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,6 +32,54 @@ class GoalStatus:
 
     goal: Condition
     satisfied: bool
+
+
+class Standing(StrEnum):
+    """How a top-level goal stands among the others."""
+
+    NOMINATED = "nominated"  # it matters, and waits for its turn
+    PURSUED = "pursued"  # what is done now is done for it
+    SATISFIED = "satisfied"  # it is believed, and kept up
+    SUSPENDED = "suspended"  # nothing leads to it now; it is tried again when that changes
+    DROPPED = "dropped"  # it is a goal no longer
+
+
+@dataclass(frozen=True, slots=True)
+class GoalReport:
+    """A top-level goal and how it stands.
+
+    Args:
+        name: What it is called.
+        goals: What is to hold, all of it.
+        priority: How much it matters; greater comes first.
+        maintain: Whether it is kept up once it is reached.
+        standing: How it stands.
+        reason: Why, in words, where there is something to say.
+    """
+
+    name: str
+    goals: tuple[Condition, ...]
+    priority: float
+    maintain: bool
+    standing: Standing
+    reason: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class GoalChange:
+    """A goal that somebody has added or removed since the cycle before.
+
+    Args:
+        name: What it is called.
+        goals: What is to hold; nothing for a goal that was removed.
+        priority: How much it matters.
+        maintain: Whether it is kept up once it is reached.
+    """
+
+    name: str
+    goals: tuple[Condition, ...] = ()
+    priority: float = 0.0
+    maintain: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,6 +112,12 @@ class Decision:
         intentions: Each skill that the agent is to carry out, and whether it has been.
         failures: What did not lead on in this cycle, by name; where the action is aborted, or
             nothing leads on, the first is why.
+        plan: The plan that is being followed, with its causal links, and what has become of it
+            in this cycle; None where skills lead the way.
+        agenda: Each top-level goal and how it stands, those that were dropped in this cycle
+            included.
+        request: What another agent is asked for, or is waited for.
+        told: The goals that were added and removed since the cycle before, in order.
     """
 
     cycle: int
@@ -75,6 +133,10 @@ class Decision:
     skill_path: SkillPath | None = None
     intentions: tuple[IntentionStatus, ...] = ()
     failures: tuple[Failure, ...] = ()
+    plan: PlanStatus | None = None
+    agenda: tuple[GoalReport, ...] = ()
+    request: Request | None = None
+    told: tuple[GoalChange, ...] = ()
 
     @property
     def beliefs(self) -> tuple[Belief, ...]:

@@ -25,7 +25,7 @@ def effects_of(clause: SkillClause, rules: Sequence[AttachmentRule]) -> tuple[Co
 
     A macro has only those it states: it is its primitive skills that attach and detach.
     """
-    if not clause.actions:
+    if not clause.is_primitive:
         return clause.effects
     attachments: list[Condition] = []
     for rule in rules:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Hashable, Iterable
+from dataclasses import dataclass
 
 from icarus_lite.execution.path import Bound, Level
 from icarus_lite.symbols import Action
@@ -17,14 +18,34 @@ MAX_BEGUN_ALIKE = 3
 MAX_BEGUN = 1_000
 """How often it may be begun at all on the way to one aim: percepts with noise never repeat."""
 
+PAUSE_S = 60.0
+"""How long another agent is not asked again for what it has not done, in s."""
+
+PAUSE_CYCLES = 100
+"""The same in cycles, where nobody tells the time."""
+
 MAX_PLANS_ALIKE = 10
 """How often plans made in the very same state may be carried through without reaching the goal."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Pause:
+    """For how long another agent is not asked again for something, and why."""
+
+    why: str
+    until_cycle: int
+    until_s: float | None
+
+    def is_over(self, cycle: int, time_s: float | None) -> bool:
+        if self.until_s is None or time_s is None:
+            return cycle >= self.until_cycle
+        return time_s >= self.until_s
 
 
 class Experience:
     """Remembers which actions have failed, and in which states what was begun."""
 
-    __slots__ = ("_begun", "_disappointments", "_failures", "_plans", "_times")
+    __slots__ = ("_begun", "_disappointments", "_failures", "_pauses", "_plans", "_times")
 
     def __init__(self) -> None:
         self._failures: dict[Action, list[str]] = {}
@@ -32,10 +53,24 @@ class Experience:
         self._begun: dict[tuple[int, Bound, Hashable], list[int]] = {}
         self._times: Counter[tuple[int, Bound]] = Counter()
         self._plans: Counter[Hashable] = Counter()
+        self._pauses: dict[Action, _Pause] = {}
 
     @property
     def given_up(self) -> dict[Action, str]:
-        """The actions that have failed too often, each with the reason of its last failure."""
+        """What is not to be used now, with the reason of its last failure.
+
+        These are actions that have failed too often, and what other agents do not do for a while.
+        """
+        return {**self._failed_too_often(), **{a: each.why for a, each in self._pauses.items()}}
+
+    @property
+    def complaints(self) -> list[str]:
+        """What is not to be used now, as sentences."""
+        failed = self._failed_too_often().items()
+        complaints = [f"{action} failed {MAX_ATTEMPTS} times: {why}" for action, why in failed]
+        return complaints + [pause.why for pause in self._pauses.values()]
+
+    def _failed_too_often(self) -> dict[Action, str]:
         failures = self._failures.items()
         given_up = {action: why[-1] for action, why in failures if len(why) >= MAX_ATTEMPTS}
         for (action, _), why in self._disappointments.items():
@@ -55,9 +90,26 @@ class Experience:
         """
         self._disappointments.setdefault((action, scene), []).append(why)
 
+    def note_declined(self, action: Action, why: str, cycle: int, time_s: float | None) -> None:
+        """Remember that another agent does not do what it was asked for, for a while."""
+        until_s = None if time_s is None else time_s + PAUSE_S
+        self._pauses[action] = _Pause(why, cycle + PAUSE_CYCLES, until_s)
+
+    def end_pauses(self, cycle: int, time_s: float | None) -> None:
+        """Let other agents be asked again for what has waited long enough.
+
+        Args:
+            cycle: The present cycle.
+            time_s: The time in s; None where nobody tells it.
+        """
+        for action, pause in list(self._pauses.items()):
+            if pause.is_over(cycle, time_s):
+                del self._pauses[action]
+
     def note_success(self, action: Action) -> None:
         """Remember that an action works after all."""
         self._failures.pop(action, None)
+        self._pauses.pop(action, None)
         for key in [key for key in self._disappointments if key[0] == action]:
             del self._disappointments[key]
 

@@ -7,7 +7,7 @@ from collections.abc import Hashable, Sequence
 from icarus_lite.inference import FactStore, InferenceEngine, Memory
 from icarus_lite.language.syntax import Condition
 from icarus_lite.planning import Imagination, PlanStep, holds
-from icarus_lite.symbols import Value
+from icarus_lite.symbols import Belief, Value
 
 
 class Moment:
@@ -56,6 +56,11 @@ class Moment:
             present = (percept.name for percept in self._memory.state.percepts)
             self._lost = frozenset(self._memory.known.difference(present))
         return self._lost
+
+    @property
+    def beliefs(self) -> frozenset[Belief]:
+        """All that is believed; percepts are left out."""
+        return frozenset(self._memory.state.supports)
 
     @property
     def imagination(self) -> Imagination:

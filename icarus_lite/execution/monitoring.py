@@ -88,7 +88,7 @@ def judge(execution: Execution, skill: Skill, outcome: Outcome | None, moment: M
             return Judgement(Fate.LEFT)
         if not skill.effects or skill.is_done(moment.facts, dict(execution.step.bindings)):
             return Judgement(Fate.FINISHED)
-    failure = _broken(execution, moment) or _out_of_time(execution, skill, moment)
+    failure = broken(execution, moment) or _out_of_time(execution, skill, moment)
     if failure is None and outcome is None:
         failure = _not_repeatable(execution.step, skill, moment)
     if failure is not None:
@@ -106,13 +106,13 @@ def _after_success(execution: Execution, skill: Skill, moment: Moment) -> Judgem
     over = _out_of_time(execution, skill, moment)
     if over is not None:
         return Judgement(Fate.LEFT, over)
-    if _broken(execution, moment) or _not_repeatable(step, skill, moment):
+    if broken(execution, moment) or _not_repeatable(step, skill, moment):
         return Judgement(Fate.LEFT, failure)
     return Judgement(Fate.REPEAT, failure)
 
 
-def _broken(execution: Execution, moment: Moment) -> Failure | None:
-    """Say what a running skill relies on that is no longer so."""
+def broken(execution: Execution, moment: Moment) -> Failure | None:
+    """Say what a running skill relies on that is no longer so; None if all of it still is."""
     step, text = execution.step, ""
     lost = [argument for argument in step.action.args if argument in moment.lost]
     if lost:

@@ -48,7 +48,7 @@ class Level:
     @property
     def is_primitive(self) -> bool:
         """Whether it acts itself rather than through subskills."""
-        return bool(self.clause.actions)
+        return self.clause.is_primitive
 
     @property
     def is_at_end(self) -> bool:

@@ -106,6 +106,8 @@ class Selection:
                 if given is None:
                     continue
                 serving = True
+                if skill.clause.agent is not None:
+                    continue  # whether to ask somebody is weighed by planning
                 for level in self._instances(skill, given):
                     if level not in seen and self._serves(skill, level, goal):
                         seen.add(level)
@@ -238,6 +240,8 @@ class Selection:
             free = {name for atom in atoms for name in atom.variables if name not in bindings}
             return FailureReason.UNBOUND_ACTION_ARGS, f"nothing binds {', '.join(sorted(free))}"
         why = self._experience.given_up.get(step.action)
+        if why is not None and step.clause.agent is not None:
+            return FailureReason.REQUEST_REFUSED, why
         if why is not None:
             return FailureReason.DRIVER_FAILED, f"it has failed too often: {why}"
         return None

@@ -22,6 +22,8 @@ def check_commands(domain: Domain, offered: Collection[str]) -> tuple[Diagnostic
     """
     report = Report(domain.source)
     for skill in domain.skills:
+        if skill.agent is not None:
+            continue  # how another agent does it is that agent's own matter
         for command in skill.actions:
             if command.predicate not in offered:
                 close = report.closest(command.predicate, offered)

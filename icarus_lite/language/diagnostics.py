@@ -55,7 +55,6 @@ CODES: Mapping[str, str] = MappingProxyType(
         "ICR035": "A skill uses a command that the driver does not offer.",
         "ICR036": "A file cannot be included.",
         "ICR037": "An older construct has no counterpart and is refused.",
-        "ICR038": "A form or field is read, but nothing acts on it yet.",
         "ICR039": "The supertype of a percept type is unknown, leads back to it, or too far up.",
         "ICR040": "Nothing uses this name (only told on request).",
         "ICR041": "A concept can never be true, or a skill never start.",
@@ -65,6 +64,8 @@ CODES: Mapping[str, str] = MappingProxyType(
         "ICR045": "No skill can ever change what a goal asks for.",
         "ICR046": "A breakpoint is set for a moment that there is not.",
         "ICR047": "A word is taken for a name, though something else must be meant.",
+        "ICR048": "An agent is unknown.",
+        "ICR049": "An agent has nothing to do, or a request is made to nobody.",
         "ICR070": "A fact of :init cannot be given, or serves nothing.",
     }
 )

@@ -42,6 +42,7 @@ _TOKENS: Mapping[Role, _TokenType] = MappingProxyType(
         Role.STRING: String,
         Role.NAME: Name.Namespace,
         Role.MOMENT: Keyword.Constant,
+        Role.AGENT: Name.Namespace,
         Role.COMMENT: Comment,
         Role.PARENTHESIS: Punctuation,
         Role.ILLEGAL: Error,

@@ -25,6 +25,8 @@ class Content(Enum):
     SUPERTYPE = auto()  # the name of a percept type
     CYCLES = auto()  # lists of fields, each for one cycle
     MOMENTS = auto()  # when a breakpoint stops a run
+    AGENTS = auto()  # names of agents
+    CHOICE = auto()  # yes or no
     TERMS = auto()  # variables, symbols, strings, numbers
 
 
@@ -87,18 +89,19 @@ FORMS: Mapping[str, Keyword] = _table(
         Content.CLAUSES,
         "Which action attaches which object to what, and which action undoes it.",
     ),
+    Keyword("agents", Content.AGENTS, "Who else works here, and may be asked to do something."),
     Keyword("task", Content.TERMS, "A named goal, and the robot that is to reach it."),
     _GOALS,
     Keyword(
         "long-term-goal",
         Content.TERMS,
-        "A goal to pursue whenever it is relevant, by priority. Checked, not acted on yet.",
+        "A goal to pursue whenever it is relevant, by priority.",
     ),
     Keyword(
         "break",
         Content.CONDITIONS,
-        "Where a run is to stop: when one of the literals begins to hold, or one of the skills "
-        "starts. Checked, not acted on yet.",
+        "Where the REPL stops a run: when one of the literals begins to hold, or one of the skills "
+        "starts.",
     ),
     Keyword(
         "test",
@@ -147,21 +150,38 @@ FIELDS: Mapping[str, Keyword] = _table(
         "What is believed once the skill has succeeded, and with `not` no longer.",
     ),
     Keyword(":timeout", Content.TERMS, "The seconds after which the skill counts as failed."),
+    Keyword(":agent", Content.AGENTS, "Whose skill it is, if it is another agent's."),
+    Keyword(
+        ":request",
+        Content.CHOICE,
+        "What that agent is told when it is to do it; `no` if it needs no word.",
+    ),
+    Keyword(
+        ":cost",
+        Content.TERMS,
+        "What the skill counts for in a plan: 1 for one's own if nothing is said, 10 for another "
+        "agent's.",
+    ),
     Keyword(
         ":break",
         Content.MOMENTS,
-        "When a run is to stop at this concept or skill. Checked, not acted on yet.",
+        "When the REPL stops a run at this concept or skill.",
     ),
     Keyword(":until", Content.SKILLS, "The action that detaches again."),
     Keyword(":child", Content.TERMS, "The argument that moves with its parent while attached."),
     Keyword(":parent", Content.TERMS, "The argument that the child moves with."),
     Keyword(":is", Content.SUPERTYPE, "The percept type of which this one is a special case."),
     Keyword(":robot", Content.TERMS, "The robot that the task is for."),
-    Keyword(":agents", Content.TERMS, "The other agents that take part in the task."),
+    Keyword(":agents", Content.AGENTS, "The other agents that take part in the task."),
     Keyword(":goal", Content.CONDITIONS, "What must hold in the end, or with `not` must not."),
     Keyword(":init", Content.CONDITIONS, "What is believed when the task begins."),
     Keyword(":relevance", Content.CONDITIONS, "What must hold for the goal to matter."),
     Keyword(":priority", Content.TERMS, "How urgent the goal is; greater comes first."),
+    Keyword(
+        ":maintain",
+        Content.CHOICE,
+        "Whether the goal is kept up once it is reached: `yes` or `no`.",
+    ),
     Keyword(":percepts", Content.CONDITIONS, "What is perceived, without variables."),
     Keyword(":action", Content.SKILLS, "The actions that have just succeeded, one cycle each."),
     Keyword(":expect", Content.CONDITIONS, "Beliefs that must be there in the end."),

@@ -175,6 +175,9 @@ class ConceptClause:
 class SkillClause:
     """One way to carry a skill out: primitive with `actions`, a macro with `subskills`.
 
+    A skill of another agent is primitive as well: that agent knows how to carry it out, and needs
+    no commands of ours.
+
     Args:
         head: The skill's name and arguments.
         elements: Start conditions (`:elements`).
@@ -184,6 +187,12 @@ class SkillClause:
         subskills: Skill calls, in order.
         effects: What will be believed once it has succeeded.
         timeout_s: Seconds after which it counts as failed, or None.
+        agent: Whose skill it is (`:agent`), a name or a variable of the head; None for whoever
+            runs the domain.
+        request: What that agent is told when it is to do it, variables to be filled in
+            (`:request "please hold ?base"`), a string; None where nothing is stated.
+        is_asked: False where that agent does it unasked (`:request no`).
+        cost: What it counts for in a plan (`:cost`); None where nothing is stated.
     """
 
     head: Atom
@@ -195,6 +204,15 @@ class SkillClause:
     effects: tuple[Condition, ...] = ()
     timeout_s: float | None = None
     span: Span = field(default=NOWHERE, compare=False)
+    agent: Term | None = None
+    request: Constant | None = None
+    is_asked: bool = True
+    cost: int | None = None
+
+    @property
+    def is_primitive(self) -> bool:
+        """Whether it is done in one step rather than through subskills."""
+        return bool(self.actions) or (self.agent is not None and not self.subskills)
 
 
 @dataclass(frozen=True, slots=True)
@@ -233,13 +251,16 @@ class LongTermGoal:
         name: What it is called.
         goals: What is to hold.
         relevance: When it is worth pursuing; always if empty.
-        priority: The higher goes first among those that are relevant.
+        priority: The higher goes first among those that are relevant; a variable takes the value
+            that the relevance binds it to.
+        maintain: Whether it is kept up once it is reached, as long as it is relevant.
     """
 
     name: str
     goals: tuple[Condition, ...]
     relevance: tuple[Condition, ...] = ()
-    priority: float = 0.0
+    priority: float | Variable = 0.0
+    maintain: bool = False
     span: Span = field(default=NOWHERE, compare=False)
 
 
@@ -317,7 +338,7 @@ class DomainTest:
 
 @dataclass(frozen=True, slots=True)
 class Domain:
-    """A whole domain, as the text states it."""
+    """A whole domain, as the text states it. `agents` are the others who work here."""
 
     name: str
     documentation: str = ""
@@ -330,4 +351,5 @@ class Domain:
     tests: tuple[DomainTest, ...] = ()
     long_term_goals: tuple[LongTermGoal, ...] = ()
     breakpoints: tuple[Breakpoint, ...] = ()
+    agents: tuple[str, ...] = ()
     source: Source = field(default=Source("<text>", ""), compare=False)

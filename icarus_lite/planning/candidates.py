@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from icarus_lite.inference.near_miss import near_misses
 from icarus_lite.language.syntax import Condition, Domain
-from icarus_lite.planning.planner import NoPlan, Plan
+from icarus_lite.planning.plan import NoPlan, Plan
 from icarus_lite.planning.relevance import relevance
 from icarus_lite.planning.situation import Imagination
 from icarus_lite.symbols import Action
@@ -37,7 +37,7 @@ def candidates(
     Skills that no chain of effects and conditions leads to from the goals are left out: see
     `relevance`.
     """
-    facts = imagination.facts(imagination.start)
+    facts = imagination.now
     skills = relevance(domain, goals).skills
     first = found.steps[0].action if isinstance(found, Plan) and found.steps else None
     ready: set[str] = set()
@@ -47,7 +47,7 @@ def candidates(
         if step.action in seen:
             continue
         seen.add(step.action)
-        why_not = "" if step.action == first else "not the first step of a shortest plan"
+        why_not = "" if step.action == first else f"the plan begins with {first}"
         if isinstance(found, NoPlan):
             why_not = "leads to no plan"
         yield Candidate(str(step.action), step.action == first, why_not)

@@ -20,6 +20,8 @@ class FailureReason(StrEnum):
     LOOP = "loop"  # it would lead back to where it has been
     GOAL_UNREACHABLE = "goal-unreachable"  # no skill, and no sequence of skills, can achieve it
     SEARCH_LIMIT = "search-limit"  # given up before everything was tried
+    REQUEST_REFUSED = "request-refused"  # another agent does not do what it was asked for
+    REQUEST_UNANSWERED = "request-unanswered"  # nor has it done it in time
 
 
 @dataclass(frozen=True, slots=True)

@@ -33,7 +33,7 @@ class Relevance:
 
 def relevance(domain: Domain, goals: Iterable[Condition]) -> Relevance:
     """Chain backwards from goals to the primitive skills that can serve them."""
-    primitives = [clause for clause in domain.skills if clause.actions]
+    primitives = [clause for clause in domain.skills if clause.is_primitive]
     effects = {id(clause): frozenset(signs_of_effects(domain, clause)) for clause in primitives}
     signs = {(goal.atom.predicate, not goal.negated) for goal in goals}
     chosen: set[int] = set()

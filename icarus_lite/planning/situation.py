@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import TypeAlias
 
 from icarus_lite.inference import (
     ATTACHED,
@@ -14,12 +15,14 @@ from icarus_lite.inference import (
     Hierarchy,
     Matcher,
     Memory,
+    Support,
     advance,
     change_of,
     ground,
     percept_facts,
 )
 from icarus_lite.language.syntax import Condition, Domain, SkillClause
+from icarus_lite.planning.layers import LayeredFacts, fluents_of
 from icarus_lite.symbols import Action, Belief, Value
 
 
@@ -79,6 +82,13 @@ class Situation:
         return self.asserted, frozenset(self.hierarchy.pairs()), self.assumed, self.denied
 
 
+Inferred: TypeAlias = tuple[FactStore, Mapping[Belief, tuple[Support, ...]]]
+"""All that would be believed in a situation, and each derived belief's supports."""
+
+_Fixed: TypeAlias = tuple[FactStore, Mapping[Belief, tuple[Support, ...]], frozenset[str]]
+"""The facts of now, the supports of those that stay as they are, and the predicates that do not."""
+
+
 class Imagination:
     """Expands imagined situations from the beliefs of one cycle.
 
@@ -86,28 +96,85 @@ class Imagination:
     definition disagree, the effect is taken at its word until percepts come in.
     """
 
-    __slots__ = ("_closure", "_domain", "_matchers", "_percepts", "evaluator", "start")
+    __slots__ = (
+        "_at_start",
+        "_closure",
+        "_domain",
+        "_fixed",
+        "_latest",
+        "_matchers",
+        "_percepts",
+        "_state",
+        "evaluator",
+        "start",
+    )
 
     def __init__(
         self, domain: Domain, memory: Memory, closure: Closure, evaluator: Evaluator | None = None
     ) -> None:
         state = memory.state
         self.evaluator = evaluator or Evaluator()
+        self._state = state
         self._domain = domain
         self._closure = closure
         self._percepts = tuple(percept_facts(state.percepts, state.lineages))
         self._matchers: dict[int, Matcher] = {}
         self.start = Situation(frozenset(memory.asserted), state.hierarchy)
+        self._at_start: Inferred | None = None
+        self._fixed: _Fixed | None = None
+        self._latest: tuple[Situation, Inferred] | None = None
+
+    @property
+    def percepts(self) -> tuple[Belief, ...]:
+        """What is perceived, as facts; it stays as it is, whatever is imagined."""
+        return self._percepts
+
+    @property
+    def now(self) -> FactStore:
+        """What is believed now, taken in as it is asked for: the same as the facts of `start`."""
+        return self._state.facts()
 
     def facts(self, situation: Situation) -> FactStore:
         """Give all that would be believed in a situation, percepts included."""
-        store = FactStore(self._percepts)
+        return self.inferred(situation)[0]
+
+    def inferred(self, situation: Situation) -> Inferred:
+        """Give all that would be believed in a situation, and each derived belief's supports.
+
+        Only what skills can change is derived anew. What was asked last, and the start, are
+        remembered: nothing may be added to these facts.
+        """
+        if self._latest is not None and situation is self._latest[0]:
+            return self._latest[1]
+        below, supports, fluents = self._fixed or self._fix()
+        if situation is self.start and self._at_start is not None:
+            return self._at_start
+        store = LayeredFacts(below, fluents)
+        for fact in self._percepts:
+            if fact.predicate in fluents:
+                store.add(fact)
         for belief in sorted(situation.asserted | situation.assumed, key=str):
-            store.add(belief)
+            if belief.predicate in fluents:
+                store.add(belief)
         for pair in situation.hierarchy.pairs():
             store.add(Belief(ATTACHED, pair))
-        self._closure.derive(store, situation.denied)
-        return store
+        derived = self._closure.derive(store, situation.denied, fluents)
+        self._latest = situation, (store, {**supports, **derived} if supports else derived)
+        return self._latest[1]
+
+    def _fix(self) -> _Fixed:
+        """Derive all that is believed now, and set apart what stays as it is."""
+        store = FactStore(self._percepts)
+        for belief in sorted(self.start.asserted, key=str):
+            store.add(belief)
+        for pair in self.start.hierarchy.pairs():
+            store.add(Belief(ATTACHED, pair))
+        supports = self._closure.derive(store)
+        self._at_start = store, supports
+        fluents = fluents_of(self._domain)
+        lasting = {b: found for b, found in supports.items() if b.predicate not in fluents}
+        self._fixed = store, lasting, fluents
+        return self._fixed
 
     def holds(self, goals: Sequence[Condition], facts: FactStore) -> bool:
         """Tell whether goals hold among these facts."""
@@ -138,7 +205,10 @@ class Imagination:
     def after(self, situation: Situation, step: PlanStep) -> Situation:
         """Give the situation after a step, as the engine would believe it on success."""
         change, concepts = step.change, self._closure.concepts
-        asserted = {b for b in situation.asserted if not change.removes(b)}
+        ended = {pattern.predicate for pattern in change.removed}
+        asserted = {
+            b for b in situation.asserted if b.predicate not in ended or not change.removes(b)
+        }
         asserted.update(
             b for b in change.added if b.predicate != ATTACHED and b.predicate not in concepts
         )
@@ -154,11 +224,18 @@ class Imagination:
         if not expected and not any(a.predicate in concepts for a in change.removed):
             return imagined
         derived = self.facts(imagined)
+        assumed = {b for b in expected if b not in derived}
+        denied = {
+            belief
+            for predicate in ended
+            for ((_, belief, _),) in derived.rows(predicate).values()
+            if change.removes(belief)
+        }
+        denied.difference_update(self._percepts)
+        if not assumed and not denied:
+            return imagined
         return replace(
-            imagined,
-            assumed=imagined.assumed | {b for b in expected if b not in derived},
-            denied=imagined.denied
-            | {b for b in derived if change.removes(b)} - set(self._percepts),
+            imagined, assumed=imagined.assumed | assumed, denied=imagined.denied | denied
         )
 
 
@@ -170,5 +247,5 @@ def holds(
 ) -> bool:
     """Tell whether a conjunction holds for some binding of its free variables."""
     bound = tuple(bindings or ())
-    found = Matcher(conditions, bound=bound, evaluator=evaluator).matches(facts, bindings)
+    found = (evaluator or Evaluator()).matcher(conditions, (), bound).matches(facts, bindings)
     return any(True for _ in found)

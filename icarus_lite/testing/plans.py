@@ -54,7 +54,7 @@ def _side_by_side(stated: Sequence[str], found: Sequence[str]) -> Iterator[str]:
 def _verdict(engine: InferenceEngine, imagination: Imagination, test: DomainTest) -> str:
     """Say whether the stated plan would work, and if not, which step cannot start."""
     situation = imagination.start
-    primitives = [clause for clause in engine.domain.skills if clause.actions]
+    primitives = [clause for clause in engine.domain.skills if clause.is_primitive]
     for number, stated in enumerate(test.plan or (), 1):
         facts = imagination.facts(situation)
         steps = imagination.applicable(primitives, facts)
@@ -72,6 +72,6 @@ def _why_not(engine: InferenceEngine, stated: Atom, facts: FactStore) -> str:
     clauses = [c for c in engine.domain.skills if c.head.predicate == stated.predicate]
     if not clauses:
         return f"no skill is called `{stated.predicate}`"
-    if not any(clause.actions for clause in clauses):
+    if not any(clause.is_primitive for clause in clauses):
         return "it is done through subskills, and a plan names the skills that act"
     return "; ".join(str(miss) for miss in near_misses(stated, clauses, facts, engine.evaluator))

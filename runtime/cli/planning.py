@@ -13,7 +13,7 @@ from runtime.errors import UsageError
 
 if TYPE_CHECKING:
     from icarus_lite.language.syntax import Condition, Domain
-    from icarus_lite.planning import NoPlan, Plan
+    from runtime.cli.plan_report import Bounds
 
 
 @app.command(
@@ -29,34 +29,69 @@ def plan(
         Path | None, typer.Option(help="Recorded frames; the last one is where to plan from.")
     ] = None,
     *,
+    explain: Annotated[
+        bool,
+        typer.Option("--explain", help="Say what each step is for, and how the plan was found."),
+    ] = False,
+    as_macro: Annotated[
+        bool,
+        typer.Option("--macro", help="Show the plan as a macro skill that could be adopted."),
+    ] = False,
+    limit: Annotated[
+        int | None,
+        typer.Option(metavar="N", help="Give up after so many situations (0: never)."),
+    ] = None,
+    seconds: Annotated[
+        float | None, typer.Option(metavar="S", help="Give up after so many seconds.")
+    ] = None,
+    improve: Annotated[
+        float | None,
+        typer.Option(metavar="S", help="Go on for so many seconds to make the plan shorter."),
+    ] = None,
     as_json: Json = False,
 ) -> None:
     """Plan from the last recorded frame, or from what the task itself gives (`:init`).
 
     Ends with status 0 and the steps, or with 1 and the reason why there is no plan.
     """
-    from icarus_lite.planning import Plan, find_plan
+    from icarus_lite.language.teams import domain_of
+    from icarus_lite.planning import Plan
+    from runtime.cli.plan_report import Answer, document, lines
     from runtime.cli.starting import find_task, start_state
 
     if (task is None) == (goal is None):
         raise UsageError("say what to plan for: either --task NAME or --goal '((…))'")
+    bounds = _bounds(limit, seconds, improve)
     domain = load(file)
     chosen = None if task is None else find_task(domain, task)
+    domain = domain if chosen is None else domain_of(domain, others=chosen.agents)
     goals = chosen.goals if chosen is not None else _goals(domain, goal or "")
     start = start_state(domain, chosen, frames)
     if frames is None and chosen is not None and not chosen.init:
         typer.echo(f"the state is that of {start.origin}", err=True)
-    found = find_plan(domain, start.imagination(), goals)
+    answer = Answer.of(domain, start.imagination(), goals, bounds)
     if as_json:
-        typer.echo(json.dumps(_document(found), ensure_ascii=False))
-    elif isinstance(found, Plan):
-        for number, step in enumerate(found.steps, 1):
-            typer.echo(f"{number:>3}  {step.action}")
-        if not found.steps:
-            typer.echo("nothing to do: the goal holds already")
+        shown = document(answer, explain=explain, as_macro=as_macro)
+        typer.echo(json.dumps(shown, ensure_ascii=False))
     else:
-        typer.echo(f"no plan: {found.reason}", err=True)
-    raise typer.Exit(HOLDS if isinstance(found, Plan) else DOES_NOT_HOLD)
+        for line in lines(answer, explain=explain, as_macro=as_macro):
+            typer.echo(line)
+        if not isinstance(answer.found, Plan):
+            typer.echo(f"no plan: {answer.found.reason}", err=True)
+    raise typer.Exit(HOLDS if isinstance(answer.found, Plan) else DOES_NOT_HOLD)
+
+
+def _bounds(limit: int | None, seconds: float | None, improve: float | None) -> Bounds:
+    """Read how long may be searched. Raises UsageError for less than nothing."""
+    from icarus_lite.planning import DEFAULT_LIMIT
+    from runtime.cli.plan_report import Bounds
+
+    for option, value in (("--limit", limit), ("--seconds", seconds), ("--improve", improve)):
+        if value is not None and not 0 <= value < float("inf"):
+            raise UsageError(f"{option} {value}: it cannot be less than 0, nor endless")
+    if limit is None:
+        limit = None if seconds is not None else DEFAULT_LIMIT
+    return Bounds(limit or None, seconds, improve)
 
 
 def _goals(domain: Domain, text: str) -> tuple[Condition, ...]:
@@ -77,12 +112,3 @@ def _goals(domain: Domain, text: str) -> tuple[Condition, ...]:
             arity = known[name][0].arity
             raise UsageError(f"goal {goal}: {name} takes {arity} arguments, not {size}")
     return goals
-
-
-def _document(found: Plan | NoPlan) -> dict[str, object]:
-    from icarus_lite.planning import Plan
-
-    if isinstance(found, Plan):
-        steps = [str(step.action) for step in found.steps]
-        return {"solved": True, "steps": steps, "cost": len(steps)}
-    return {"solved": False, "steps": [], "cost": None, "reason": found.reason}

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
+from icarus_lite.language.checking.agents import check_agents, check_owner, known_agents
 from icarus_lite.language.checking.detaching import check_detaching
 from icarus_lite.language.checking.expressions import check_expressions
 from icarus_lite.language.checking.kinds import check_kinds
+from icarus_lite.language.checking.long_term import check_long_term_goals
 from icarus_lite.language.checking.patterns import Patterns
 from icarus_lite.language.checking.possibility import check_effects, check_possibility
 from icarus_lite.language.checking.reachability import check_reachability
@@ -67,6 +69,7 @@ class _Check:
         self._report = Report(domain.source)
         self._patterns = Patterns(domain, self._names, functions, self._report)
         self._asked = _asked(domain)
+        self._agents = known_agents(domain)
 
     def run(self, *, thorough: bool) -> list[Diagnostic]:
         """Check everything."""
@@ -79,8 +82,10 @@ class _Check:
             self._attachment(rule)
         self._tasks()
         self._patterns.conditions(self._domain.goals)
+        check_agents(self._domain, self._report)
         for goal in self._domain.long_term_goals:
             self._patterns.conditions((*goal.goals, *goal.relevance))
+        check_long_term_goals(self._domain.long_term_goals, self._report)
         heads = {clause.head for clause in self._domain.concepts}
         heads |= {clause.head for clause in self._domain.skills}
         for stop in self._domain.breakpoints:
@@ -149,7 +154,7 @@ class _Check:
                 head, first.arity, f"its first clause is in {first.span.in_line}"
             )
         self._patterns.no_attributes(head)
-        if bool(clause.actions) == bool(clause.subskills):
+        if bool(clause.subskills) == clause.is_primitive:
             has = "both :actions and :subskills" if clause.actions else "nothing to do"
             hint = ":actions for what the driver does, or :subskills for what other skills do"
             self._report.error(
@@ -164,6 +169,7 @@ class _Check:
         for call in clause.subskills:
             self._call_of_skill(call)
         check_skill_variables(clause, self._report)
+        check_owner(clause, self._agents, self._report)
 
     def _call_of_skill(self, call: Atom) -> None:
         self._patterns.no_attributes(call)
@@ -290,4 +296,5 @@ def _asked(domain: Domain) -> frozenset[str]:
     conditions = [c for concept in domain.concepts for c in concept.elements]
     conditions += [c for skill in domain.skills for c in (*skill.elements, *skill.holds)]
     conditions += [*domain.goals, *(goal for task in domain.tasks for goal in task.goals)]
+    conditions += [c for goal in domain.long_term_goals for c in (*goal.goals, *goal.relevance)]
     return frozenset(condition.atom.predicate for condition in conditions)

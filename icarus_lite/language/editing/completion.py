@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 from icarus_lite.language.checking.vocabulary import Origin
 from icarus_lite.language.editing.descriptions import kinds_of
@@ -14,6 +15,10 @@ from icarus_lite.language.editing.nesting import Group, nest, open_groups
 from icarus_lite.language.editing.occurrences import Occurrence, Place, Role, occurrences
 from icarus_lite.language.functions import FUNCTIONS, Function
 from icarus_lite.language.keywords import FORMS, MOMENTS, NOT, field_named
+
+_CHOICES: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {":maintain": ("yes", "no"), ":request": ("no",)}
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,14 +168,16 @@ class _Moment:
 
     def _symbols(self) -> Iterator[Proposal]:
         word = self._would_be("x")
-        if word.place.field == ":break":
-            yield from self._moments(word.place.form)
+        if word.place.field == ":break" or word.place.field in _CHOICES:
+            yield from self._words_for(word.place)
             return
         match word.role:
             case Role.PREDICATE if word.place.form != "percepts" or word.place.field:
                 yield from self._predicates(word.place)
             case Role.SKILL:
                 yield from self._named(Role.SKILL)
+            case Role.AGENT if word.place.form != "agents":
+                yield from self._agents()
             case Role.FUNCTION:
                 for function in self.functions.values():
                     yield Proposal(
@@ -182,9 +189,19 @@ class _Moment:
                     if value != self.typed:
                         yield Proposal(value, Role.SYMBOL, f"value of ^{word.attribute}")
 
-    def _moments(self, form: str) -> Iterator[Proposal]:
+    def _agents(self) -> Iterator[Proposal]:
         given = {item.text for item in self.chain[-1].items if isinstance(item, Lexeme)}
-        for moment in MOMENTS.get(form, {}).values():
+        for name in self.index.names(Role.AGENT):
+            used = len(self.index.occurrences(Thing(Role.AGENT, name)))
+            if name not in given and (name != self.typed or used > 1):
+                yield Proposal(name, Role.AGENT, "agent")
+
+    def _words_for(self, place: Place) -> Iterator[Proposal]:
+        """Propose the words that a field has of its own."""
+        given = {item.text for item in self.chain[-1].items if isinstance(item, Lexeme)}
+        for text in _CHOICES.get(place.field, ()):
+            yield Proposal(text, Role.SYMBOL)
+        for moment in MOMENTS.get(place.form, {}).values() if place.field == ":break" else ():
             if moment.name not in given:
                 yield Proposal(moment.name, Role.MOMENT, "moment", moment.documentation)
 

@@ -68,6 +68,9 @@ def _thing(index: Index, thing: Thing, word: Occurrence) -> str:
             return _attribute(index, thing)
         case Role.VARIABLE:
             return _variable(index, thing)
+        case Role.AGENT:
+            users = _users(index, thing, index.definitions(thing))
+            return f"**`{thing.name}`** · another agent\n\n{users}"
     of = f"value of `^{word.attribute}` of `{word.owner}`" if word.attribute else "symbol"
     return f"**`{word.name}`** · {of}"
 

@@ -18,6 +18,7 @@ _THINGS = (
     Role.ATTRIBUTE,
     Role.VARIABLE,
     Role.SYMBOL,
+    Role.AGENT,
 )
 _ORIGINS = {"percepts": Origin.PERCEPT, "concepts": Origin.CONCEPT}
 _PATTERN = re.compile(r"[^()\";]*")

@@ -32,6 +32,7 @@ class Role(StrEnum):
     STRING = "string"
     NAME = "name"
     MOMENT = "moment"
+    AGENT = "agent"
     COMMENT = "comment"
     PARENTHESIS = "parenthesis"
     ILLEGAL = "illegal"
@@ -144,8 +145,8 @@ def _content(items: Sequence[Node], place: Place, content: Content) -> Iterator[
         case Content.CLAUSES:
             for group in groups:
                 yield from _clause(group, place.form)
-        case Content.CONDITIONS:
-            yield from _entries(items, place, Content.CONDITIONS)
+        case Content.CONDITIONS | Content.AGENTS:
+            yield from _entries(items, place, content)
         case _:
             yield from _named(items, place)
 
@@ -210,9 +211,10 @@ def _fields(items: Sequence[Node], place: Place) -> Iterator[Occurrence]:
 def _entries(values: Sequence[Node], place: Place, content: Content) -> Iterator[Occurrence]:
     """Read the values of a field: entries one after another, or a list of them."""
     for value in values:
-        if content is Content.MOMENTS:
+        if content in (Content.MOMENTS, Content.AGENTS):
+            read = _moment if content is Content.MOMENTS else _agent
             for word in value.items if isinstance(value, Group) else (value,):
-                yield from _moment(word, place)
+                yield from read(word, place)
         elif isinstance(value, Lexeme):
             yield from _term(value, place)
         elif isinstance(value.items[0] if value.items else None, Group):
@@ -307,6 +309,13 @@ def _moment(word: Node, place: Place) -> Iterator[Occurrence]:
     if word.text in MOMENTS.get(place.form, ()):
         yield Occurrence(Role.MOMENT, word.text, word.start, word.stop, place)
     else:
+        yield from _term(word, place)
+
+
+def _agent(word: Node, place: Place) -> Iterator[Occurrence]:
+    if isinstance(word, Lexeme) and word.kind is Kind.SYMBOL:
+        yield _word(word, Role.AGENT, place, defines=place.form == "agents")
+    elif isinstance(word, Lexeme):
         yield from _term(word, place)
 
 

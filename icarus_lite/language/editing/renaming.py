@@ -10,7 +10,7 @@ from icarus_lite.language.editing.occurrences import Occurrence, Role
 from icarus_lite.language.keywords import NOT
 
 _MARKERS = {Role.VARIABLE: "?", Role.ATTRIBUTE: "^"}
-_RENAMEABLE = (Role.PREDICATE, Role.SKILL, Role.ATTRIBUTE, Role.VARIABLE)
+_RENAMEABLE = (Role.PREDICATE, Role.SKILL, Role.ATTRIBUTE, Role.VARIABLE, Role.AGENT)
 _REASONS = {
     Role.FORM: "`{name}` is a word of the language",
     Role.FIELD: "`{name}` is a word of the language",

@@ -165,12 +165,13 @@ class _Export:
         )
         parts = tuple(dict.fromkeys([*body.parts, *work.extra]))
         place = f", {clause.span.in_line}" if clause.span.line else ""
+        of = "" if clause.agent is None else f" of the agent {clause.agent}"
         return PddlAction(
             name,
             tuple(Typed(variable_name(p), body.types[p]) for p in parameters),
             conjunction(parts),
             effects,
-            comment=f"the skill {clause.head}{place}",
+            comment=f"the skill {clause.head}{of}{place}",
         )
 
     def _possible_bonds(self) -> Iterator[tuple[object, object]]:
@@ -202,6 +203,8 @@ class _Export:
 
     def _remarks(self) -> tuple[str, ...]:
         remarks = []
+        if any(clause.agent is not None or clause.cost is not None for clause in self._skills):
+            remarks.append("Actions of other agents stand beside one's own, and all cost the same.")
         evaluated = [
             used
             for used in self._names.used

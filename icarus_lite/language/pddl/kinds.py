@@ -44,7 +44,7 @@ class Kinds:
 
 def planned_skills(domain: Domain) -> tuple[SkillClause, ...]:
     """Give the clauses that a planner uses: those that the driver carries out."""
-    return tuple(clause for clause in domain.skills if clause.actions)
+    return tuple(clause for clause in domain.skills if clause.is_primitive)
 
 
 def kinds_of(domain: Domain, goals: Iterable[Condition], facts: Sequence[Belief]) -> Kinds:

@@ -235,7 +235,7 @@ def _declared(section: Group | None, scope: Scope) -> tuple[Typed, ...]:
 
 def _predicates(section: Group | None, scope: Scope) -> None:
     for item in section.items[1:] if section else ():
-        name, parameters = _pattern(item, scope)
+        name, parameters = _pattern(item, scope, widened=True)
         if name.text in scope.predicates:
             message = f"the predicate `{name}` is declared twice"
             scope.report.error(name.span, "PDDL011", message, "remove one of them")
@@ -243,12 +243,13 @@ def _predicates(section: Group | None, scope: Scope) -> None:
         scope.predicates[name.text] = Predicate(name.text, parameters, item.span)
 
 
-def _pattern(item: Node, scope: Scope) -> tuple[Word, tuple[Typed, ...]]:
+def _pattern(item: Node, scope: Scope, *, widened: bool = False) -> tuple[Word, tuple[Typed, ...]]:
     """Read `(on ?x ?y - block)`."""
     if isinstance(item, Word) or not item.items or not isinstance(item.items[0], Word):
         message = "a predicate is declared with its variables: (on ?x ?y - block)"
         scope.refuse(item.span, "PDDL006", message)
-    return item.items[0], typed_list(item.items[1:], scope, variables=True)
+    parameters = typed_list(item.items[1:], scope, variables=True, widened=widened)
+    return item.items[0], parameters
 
 
 def _rule(section: Group, scope: Scope) -> Rule:

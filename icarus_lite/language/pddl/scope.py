@@ -8,7 +8,7 @@ from typing import NoReturn
 
 from icarus_lite.language.checking.report import Report
 from icarus_lite.language.pddl.nodes import Group, Node, Word
-from icarus_lite.language.pddl.syntax import OBJECT, Predicate, Typed, is_a
+from icarus_lite.language.pddl.syntax import OBJECT, Predicate, Typed, ancestors, is_a
 from icarus_lite.language.reading.explanations import closest, listing
 from icarus_lite.language.syntax import Span
 
@@ -88,17 +88,21 @@ class Scope:
         return is_a(self.types, name, other)
 
 
-def typed_list(nodes: Sequence[Node], scope: Scope, *, variables: bool) -> tuple[Typed, ...]:
+def typed_list(
+    nodes: Sequence[Node], scope: Scope, *, variables: bool, widened: bool = False
+) -> tuple[Typed, ...]:
     """Read `a b - t c - u d`: names or variables with their types.
 
     Args:
         nodes: The list's entries.
         scope: Knows the types.
         variables: Whether variables are declared, rather than objects.
+        widened: Whether `(either t u)` may stand for the nearest type above both, as it may where
+            a predicate is declared: what its facts can be about decides on nothing.
     """
     found = [
         Typed(word.text, OBJECT if kind is None else scope.known_type(kind), word.span)
-        for word, kind in pairs(nodes, scope)
+        for word, kind in pairs(_widened(nodes, scope) if widened else nodes, scope)
     ]
     seen: set[str] = set()
     for each in found:
@@ -109,6 +113,21 @@ def typed_list(nodes: Sequence[Node], scope: Scope, *, variables: bool) -> tuple
             scope.refuse(each.span, "PDDL011", f"`{each.name}` is declared twice")
         seen.add(each.name)
     return tuple(found)
+
+
+def _widened(nodes: Sequence[Node], scope: Scope) -> list[Node]:
+    """Put the nearest type above all alternatives in the place of each `(either t u)`."""
+    found: list[Node] = []
+    for node in nodes:
+        words = list(node.items[1:]) if isinstance(node, Group) else []
+        kinds = [scope.known_type(item) for item in words if isinstance(item, Word)]
+        if isinstance(node, Group) and node.head == "either" and len(kinds) == len(words) > 0:
+            above = ancestors(scope.types, kinds[0])
+            kind = next(each for each in above if all(scope.is_a(k, each) for k in kinds))
+            found.append(Word(kind, node.span))
+        else:
+            found.append(node)
+    return found
 
 
 def pairs(nodes: Sequence[Node], scope: Scope) -> list[tuple[Word, Word | None]]:

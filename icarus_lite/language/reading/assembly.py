@@ -12,6 +12,7 @@ from icarus_lite.language.diagnostics import Diagnostic
 from icarus_lite.language.older_names import MODERN_FIELDS, MODERN_FORMS
 from icarus_lite.language.reading.breakpoints import breakpoints_of_clause, timed
 from icarus_lite.language.reading.parts import Clause, Command, Field, Form, Group, Problem, Word
+from icarus_lite.language.reading.values import choice, cost, priority, seconds
 from icarus_lite.language.syntax import (
     Atom,
     AttachmentRule,
@@ -28,7 +29,6 @@ from icarus_lite.language.syntax import (
     PerceptType,
     SkillClause,
     Source,
-    Span,
     Task,
     Term,
     Variable,
@@ -66,6 +66,7 @@ class _Draft:
     tests: list[DomainTest] = field(default_factory=list)
     long_term_goals: list[LongTermGoal] = field(default_factory=list)
     breakpoints: list[Breakpoint] = field(default_factory=list)
+    agents: list[Word] = field(default_factory=list)
 
     def add(self, form: Form) -> None:
         """Take in one top-level form."""
@@ -95,6 +96,8 @@ class _Draft:
         match form.keyword.text:
             case "long-term-goal":
                 self.long_term_goals.append(self._long_term_goal(form))
+            case "agents":
+                self._add_agents(form)
             case "break":
                 self._add_breakpoints(form)
             case "create-problems":
@@ -117,6 +120,7 @@ class _Draft:
             tests=tuple(self.tests),
             long_term_goals=tuple(self.long_term_goals),
             breakpoints=tuple([timed(each, skills) for each in self.breakpoints]),
+            agents=tuple([agent.text for agent in self.agents]),
             source=self.report.source,
         )
 
@@ -156,7 +160,6 @@ class _Draft:
                     f"the driver command `{name}` is written without its star",
                     f"write (*{name} …); skills are called in :subskills",
                 )
-        timeout = _values(fields, ":timeout", Constant)
         self._add_moments("skills", clause, fields)
         return SkillClause(
             head=clause.head,
@@ -166,21 +169,13 @@ class _Draft:
             actions=tuple(command.atom for command in commands),
             subskills=_values(fields, ":subskills", Atom),
             effects=_values(fields, ":effects", Condition),
-            timeout_s=self._seconds(timeout[0]) if timeout else None,
+            timeout_s=seconds(_values(fields, ":timeout", Constant), self.report),
             span=clause.span,
+            agent=_term(fields, ":agent"),
+            request=next(iter(_values(fields, ":request", Constant)), None),
+            is_asked=self._choice(fields, ":request", default=True),
+            cost=cost(_values(fields, ":cost", Constant), self.report),
         )
-
-    def _seconds(self, constant: Constant) -> float:
-        value = constant.value
-        if isinstance(value, str) or value <= 0:
-            self.report.error(
-                constant.span,
-                "ICR010",
-                f"a timeout of {constant} s never lets the skill run",
-                "give the seconds after which it has failed, such as :timeout 20",
-            )
-            return 0.0
-        return float(value)
 
     def _attachment(self, clause: Clause) -> AttachmentRule | None:
         fields = self._fields(clause.fields)
@@ -201,9 +196,6 @@ class _Draft:
         fields = self._fields(_form_fields(form))
         robot = _values(fields, ":robot", Word)
         agents = _values(fields, ":agents", Word)
-        if agents:
-            what = f"the other agents of the task `{form.words[0].text}`"
-            self._note_idle(agents[0].span, what, "only what its robot can do is planned")
         return Task(
             name=form.words[0].text,
             title=form.words[1].text if len(form.words) > 1 else "",
@@ -221,14 +213,29 @@ class _Draft:
             message = f"the long-term goal `{name.text}` has no `:goal`"
             hint = "say what is to hold: :goal ((attached hubcover case))"
             self.report.error(name.span, "ICR011", message, hint)
-        priority = self._priority(_values(fields, ":priority", Constant))
-        what = f"the long-term goal `{name.text}`"
-        self._note_idle(form.keyword.span, what, "an agent pursues the goals of its task")
-        relevance = _values(fields, ":relevance", Condition)
-        return LongTermGoal(name.text, goals, relevance, priority, form.span)
+        return LongTermGoal(
+            name.text,
+            goals,
+            relevance=_values(fields, ":relevance", Condition),
+            priority=priority(_term(fields, ":priority")),
+            maintain=self._choice(fields, ":maintain", default=False),
+            span=form.span,
+        )
 
-    def _priority(self, given: tuple[Constant, ...]) -> float:
-        return float(given[0].value) if given else 0.0
+    def _choice(
+        self, fields: Mapping[str, Iterable[object]], keyword: str, *, default: bool
+    ) -> bool:
+        return choice(keyword, _values(fields, keyword, Word), self.report, default=default)
+
+    def _add_agents(self, form: Form) -> None:
+        for word in form.words:
+            first = next((each for each in self.agents if each.text == word.text), None)
+            if first is None:
+                self.agents.append(word)
+                continue
+            message = f"the agent `{word.text}` is named twice"
+            hint = f"it stands at {first.span.place} already; name each agent once"
+            self.report.error(word.span, "ICR011", message, hint)
 
     def _add_breakpoints(self, form: Form) -> None:
         conditions = [item for item in form.items if isinstance(item, Condition)]
@@ -237,21 +244,13 @@ class _Draft:
             hint = "name one: (break (attached ?obj case))"
             self.report.error(form.keyword.span, "ICR011", message, hint)
             return
-        self._note_breakpoints(form.keyword.span)
         self.breakpoints += [Breakpoint(each, span=each.span) for each in conditions]
 
     def _add_moments(
         self, form: str, clause: Clause, fields: Mapping[str, Iterable[object]]
     ) -> None:
         words = _values(fields, ":break", Word)
-        found = breakpoints_of_clause(form, clause, words, self.report)
-        if found:
-            self._note_breakpoints(found[0].span)
-        self.breakpoints += found
-
-    def _note_breakpoints(self, span: Span) -> None:
-        if not self.breakpoints:  # once is enough
-            self._note_idle(span, "breakpoints", "a run does not stop there")
+        self.breakpoints += breakpoints_of_clause(form, clause, words, self.report)
 
     def _add_problems(self, form: Form) -> None:
         problems = [item for item in form.items if isinstance(item, Problem)]
@@ -266,11 +265,6 @@ class _Draft:
             f"its problems are taken as tasks {named}{more}; write (task NAME :goal (…)) for each"
         )
         self.report.note(form.keyword.span, "ICR028", message, hint)
-
-    def _note_idle(self, span: Span, what: str, instead: str) -> None:
-        message = f"nothing acts on {what} yet"
-        hint = f"{instead}; writing it down does no harm"
-        self.report.note(span, "ICR038", message, hint)
 
     def _test(self, form: Form) -> DomainTest:
         fields = self._fields(_form_fields(form), older=False)

@@ -23,6 +23,7 @@ MODERN_FORMS = (
     "concepts",
     "skills",
     "attachments",
+    "agents",
     "task",
     "goals",
     "long-term-goal",

@@ -177,7 +177,8 @@ class _Parts(Transformer[Token, tuple[Form, ...]]):
         return tuple(children)
 
     domain_form = percepts_form = concepts_form = skills_form = staticmethod(_form)
-    attachments_form = task_form = goals_form = test_form = staticmethod(_form)
+    attachments_form = agents_form = task_form = staticmethod(_form)
+    goals_form = test_form = staticmethod(_form)
     include_form = long_term_goal_form = break_form = problems_form = staticmethod(_form)
     atom = staticmethod(_atom)
 
@@ -235,7 +236,7 @@ class _Parts(Transformer[Token, tuple[Form, ...]]):
     def name(self, children: list[Any]) -> Word:
         return _word(children[0])
 
-    moment = name
+    moment = choice = name
 
     def variable(self, children: list[Any]) -> Variable:
         return Variable(str(children[0]), token_span(children[0]))

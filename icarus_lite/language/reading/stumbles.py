@@ -7,7 +7,10 @@ from dataclasses import dataclass
 
 from icarus_lite.language.reading.brackets import FORM_NAMES, Lines
 
-FORM_TERMINALS = {name.upper().replace("-", "_"): name for name in FORM_NAMES}
+_ALSO_FIELDS = {"agents": "AGENTS_FORM"}
+FORM_TERMINALS = {
+    _ALSO_FIELDS.get(name, name.upper().replace("-", "_")): name for name in FORM_NAMES
+}
 MODERN_FIELD_TERMINALS = {
     "ELEMENTS": ":elements",
     "TESTS": ":tests",
@@ -17,6 +20,9 @@ MODERN_FIELD_TERMINALS = {
     "SUBSKILLS": ":subskills",
     "EFFECTS": ":effects",
     "TIMEOUT": ":timeout",
+    "AGENT": ":agent",
+    "REQUEST": ":request",
+    "COST": ":cost",
     "BREAK_FIELD": ":break",
     "UNTIL": ":until",
     "CHILD": ":child",
@@ -28,6 +34,7 @@ MODERN_FIELD_TERMINALS = {
     "INIT": ":init",
     "RELEVANCE": ":relevance",
     "PRIORITY": ":priority",
+    "MAINTAIN": ":maintain",
     "ACTION": ":action",
     "EXPECT": ":expect",
     "EXPECT_NOT": ":expect-not",

@@ -164,7 +164,7 @@ spec = importlib.util.spec_from_file_location("random_domains", sys.argv[1])
 module = importlib.util.module_from_spec(spec)
 sys.modules["random_domains"] = module
 spec.loader.exec_module(module)
-for seed in range(6):
+for seed in range(12):
     for decision in module.decisions_of(seed, calm=False):
         print(decision.kind, decision.skill_path, decision.failures, decision.candidates)
 """

@@ -27,3 +27,12 @@ def test_what_no_driver_offers_is_shown_at_its_place():
 def test_nothing_is_said_of_what_is_offered():
     domain, _ = parse_domain(TEXT)
     assert check_commands(domain, {"grap", "weld"}) == ()
+
+
+def test_what_another_agent_does_needs_no_driver_of_ours():
+    text = """(agents arm-2) (percepts (part))
+    (skills ((weld ?p) :agent arm-2 :elements ((part ?p)) :actions ((*weld ?p)) :effects ((ok ?p))))
+    (task 1 :goal ((ok p1)))"""
+    domain, found = parse_domain(text)
+    assert domain is not None, found
+    assert check_commands(domain, {"grasp"}) == ()

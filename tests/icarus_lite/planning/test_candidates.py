@@ -30,7 +30,7 @@ def considered(agent: Agent, *outcomes: Outcome) -> list[tuple[str, bool, str]]:
 def test_the_chosen_the_others_and_what_cannot_start() -> None:
     agent = Agent(DOMAIN, ["(attached plug case)"])
     assert considered(agent) == [
-        ("(pick-up h1 cover)", False, "not the first step of a shortest plan"),
+        ("(pick-up h1 cover)", False, "the plan begins with (pick-up h1 plug)"),
         ("(pick-up h1 plug)", True, ""),
         ("(insert ?o ?into)", False, "nothing matches (holding ?h ?o)"),
     ]

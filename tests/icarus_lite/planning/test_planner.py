@@ -116,8 +116,18 @@ def test_a_literal_that_no_skill_changes_is_said_to_be_so() -> None:
     assert found == NoPlan("no skill can ever make (melted case) true", final=True)
 
 
-def test_an_impasse_names_what_could_start() -> None:
+def test_what_is_out_of_reach_is_traced_to_the_condition_at_which_the_best_way_ends() -> None:
     found = plan(ASSEMBLY, SCENE, "(attached case hubcover)")
+    assert found == NoPlan(
+        "no skill can ever make (attached case hubcover) true: "
+        "(insert ?o ?into) needs (holding ?h case); "
+        "(pick-up ?h ?o) needs (object case ^type part)",
+        final=True,
+    )
+
+
+def test_an_impasse_names_what_could_start() -> None:
+    found = plan(ASSEMBLY, SCENE, "((attached plug case) (attached plug h1))")
     assert isinstance(found, NoPlan)
     assert found.final
     assert "(pick-up h1 hubcover)" in found.reason

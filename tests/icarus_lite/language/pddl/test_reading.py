@@ -331,3 +331,26 @@ def test_any_mutation_of_a_problem_gives_diagnostics(data: st.DataObject) -> Non
             case _:
                 words[place] = data.draw(st.sampled_from(words))
     attempt(" ".join(words), PROBLEM_TEXT)
+
+
+def test_a_predicate_may_be_declared_of_either_of_two_types():
+    text = (
+        "(define (domain d) (:types person plane - movable city movable - object)"
+        " (:predicates (at ?x - (either person plane) ?c - city) (in ?y - (either plane city))))"
+    )
+    domain, found = read_pddl_domain(Source("d.pddl", text))
+    assert domain is not None
+    assert not found
+    assert [[each.type for each in p.parameters] for p in domain.predicates] == [
+        ["movable", "city"],
+        ["object"],
+    ]
+
+
+def test_an_action_may_not_be_about_either_of_two_types():
+    text = (
+        "(define (domain d) (:types a b) (:action do :parameters (?x - (either a b)) :effect ()))"
+    )
+    domain, found = read_pddl_domain(Source("d.pddl", text))
+    assert domain is None
+    assert [each.code for each in found] == ["PDDL007"]

@@ -1,0 +1,106 @@
+"""The facts that grounding reaches: those that may come to hold, numbered, and those that stay."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import TypeAlias
+
+from icarus_lite.planning.grounding.views import Attributes, Cells, Index, View
+from icarus_lite.symbols import Belief
+
+GIVEN = "given "
+"""Before the predicate of a concept: the belief as an effect asserted it. No name has a space."""
+
+HELD = "held "
+"""Before `attached` where concepts define that as well: the pair as the hierarchy has it."""
+
+_Inserter: TypeAlias = Callable[[int, Cells, Attributes], None]
+
+
+class FactBase:
+    """Facts, each with a number if its truth may change, in the indexes that joins look into.
+
+    A fact that may change is *noted* when something is found to bring it about, and *taken in*,
+    so that joins see it, together with all others of its predicate noted so far.
+    """
+
+    __slots__ = ("_feeds", "_indexes", "_waiting", "atoms", "numbers")
+
+    def __init__(self) -> None:
+        self.atoms: list[tuple[str, Cells, Attributes]] = []
+        self.numbers: dict[str, dict[object, int]] = {}
+        self._waiting: dict[str, list[int]] = {}
+        self._indexes: dict[View, Index] = {}
+        self._feeds: dict[str, list[_Inserter]] = {}
+
+    def index(self, view: View) -> Index:
+        """Give the index of a view on numbered facts; facts taken in later go into it as well."""
+        index = self._indexes.get(view)
+        if index is None:
+            index = self._indexes[view] = {}
+            insert = view.inserter(index, numbered=True)
+            for number, (predicate, args, attributes) in enumerate(self.atoms):
+                if predicate == view.predicate and number not in self._waiting.get(predicate, ()):
+                    insert(number, args, attributes)
+            self._feeds.setdefault(view.predicate, []).append(insert)
+        return index
+
+    def numbers_of(self, predicate: str) -> dict[object, int]:
+        """Give the numbers of a predicate's facts by arguments, or arguments and attributes."""
+        return self.numbers.setdefault(predicate, {})
+
+    def note(self, predicate: str, args: Cells, attributes: Attributes = ()) -> int:
+        """Give the number of a fact; a new one waits to be taken in."""
+        numbers = self.numbers_of(predicate)
+        key = (args, attributes) if attributes else args
+        number = numbers.get(key)
+        if number is None:
+            number = numbers[key] = len(self.atoms)
+            self.atoms.append((predicate, args, attributes))
+            self._waiting.setdefault(predicate, []).append(number)
+        return number
+
+    def noted(self, predicate: str) -> Callable[[Cells], int]:
+        """Give a function that notes a fact without attributes which is known to be new."""
+        numbers, atoms = self.numbers_of(predicate), self.atoms
+        waiting = self._waiting.setdefault(predicate, [])
+
+        def note(args: Cells) -> int:
+            number = numbers[args] = len(atoms)
+            atoms.append((predicate, args, ()))
+            waiting.append(number)
+            return number
+
+        return note
+
+    def take_in(self) -> tuple[str, list[int]] | None:
+        """Let joins see what waits of one predicate; give it, or None if nothing waits."""
+        for predicate, waiting in self._waiting.items():
+            if waiting:
+                taken = list(waiting)
+                waiting.clear()
+                for insert in self._feeds.get(predicate, ()):
+                    for number in taken:
+                        _, args, attributes = self.atoms[number]
+                        insert(number, args, attributes)
+                return predicate, taken
+        return None
+
+    def belief(self, number: int) -> Belief:
+        """Give a numbered fact as a belief."""
+        predicate, args, attributes = self.atoms[number]
+        return Belief(plain(predicate), args, dict(attributes))
+
+
+def static_index(view: View, facts: Iterable[tuple[Cells, Attributes]]) -> Index:
+    """Give an index of facts that do not change."""
+    index: Index = {}
+    insert = view.inserter(index, numbered=False)
+    for args, attributes in facts:
+        insert(0, args, attributes)
+    return index
+
+
+def plain(predicate: str) -> str:
+    """Give the predicate that people know."""
+    return predicate.removeprefix(GIVEN).removeprefix(HELD)
