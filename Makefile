@@ -8,7 +8,7 @@ BIN := $(VENV)/bin
 PACKAGES := icarus_lite aapa runtime
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt
 
-.PHONY: demo demo-without test check lint types imports format picture bench-task bench-language fuzz mistakes parentheses reference vscode colours fuzz-engine bench-engine bench-engine-rules bench-generator bench-tracking bench-aapa clean help
+.PHONY: demo demo-without test check lint types imports format picture bench-task bench-language fuzz mistakes parentheses reference vscode colours fuzz-engine bench-engine bench-engine-rules bench-surprises bench-generator bench-tracking bench-aapa bench-planning clean help
 
 help: ## list the targets
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/'
@@ -92,6 +92,9 @@ bench-engine: $(VENV)/.installed-dev ## inference beside CLIPS and clingo, in on
 bench-engine-rules: $(VENV)/.installed-dev ## how inference grows with the number of rules
 	$(BIN)/python benchmarks/engine_rules.py --out docs/results/engine-rules.md
 
+bench-surprises: $(VENV)/.installed ## how many plans survive how many surprises (three minutes)
+	$(BIN)/python benchmarks/surprises.py --runs 200 --out docs/results/surprises.md
+
 bench-generator: $(VENV)/.installed ## the generated data beside what is published of LA-CATER (five minutes)
 	$(BIN)/python benchmarks/generator_calibration.py --out docs/results/generator.md
 
@@ -108,6 +111,9 @@ bench-tracking: $(VENV)/.installed .venv-peers/.installed ## AAPA beside norfair
 
 bench-aapa: $(VENV)/.installed ## AAPA and aapa-plus beside the paper's table, and each idea left out (half an hour)
 	$(BIN)/python benchmarks/aapa_table.py --out docs/results/aapa.md
+
+bench-planning: $(VENV)/.installed ## sixty planning problems beside pyperplan (an hour; fetches them, or INSTANCES=checkout)
+	$(BIN)/python benchmarks/planning.py $(if $(INSTANCES),--instances $(INSTANCES)) --rows build/planning.jsonl --out docs/results/planning.md
 
 clean: ## remove the virtual environment and what tools left behind
 	rm -rf $(VENV) .venv-peers .mypy_cache .ruff_cache .pytest_cache .hypothesis build dist

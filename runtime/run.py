@@ -147,23 +147,18 @@ def run_at(
     first = header(
         domain,
         task.goals,
+        given=task.init,
+        others=list(task.agents),
+        long_term=False,
         task=task.name,
         robot=config.model,
         seed=options.seed,
         workplace=workplace.words,
         anchoring=_plain(asdict(parameters)),
     )
+    agent = Agent(domain, task.goals, given=task.init, others=task.agents, long_term=False)
     with TraceWriter(trace, first) as writer:
-        result = Loop(
-            Agent(domain, task.goals, given=task.init),
-            Anchoring(parameters),
-            workplace.driver,
-            workplace.source,
-            config,
-            trace=writer,
-            observer=observer,
-            limits=options.limits,
-        ).run()
+        result = loop_at(workplace, agent, config, parameters, options, observer, writer).run()
     return RunResult(
         task.name,
         config.model,
@@ -172,6 +167,28 @@ def run_at(
         result.cycles,
         result.actions,
         str(trace),
+    )
+
+
+def loop_at(
+    workplace: Workplace,
+    agent: Agent,
+    config: RobotConfig,
+    parameters: AnchoringParameters,
+    options: RunOptions,
+    observer: Callable[[CycleReport], None] | None = None,
+    trace: TraceWriter | None = None,
+) -> Loop:
+    """Give the loop that runs an agent at a workplace."""
+    return Loop(
+        agent,
+        Anchoring(parameters),
+        workplace.driver,
+        workplace.source,
+        config,
+        trace=trace,
+        observer=observer,
+        limits=options.limits,
     )
 
 

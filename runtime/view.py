@@ -149,6 +149,8 @@ def _doing(report: CycleReport) -> str:
     if decision.kind is DecisionKind.IMPASSE:
         return f"impasse: {decision.reason}"
     action = "" if decision.step is None else str(decision.step.action)
+    if decision.request is not None:
+        return decision.request.text
     if decision.kind is DecisionKind.ABORT:
         return f"{action} aborted: {decision.reason}"
     return action

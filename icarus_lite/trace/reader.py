@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from icarus_lite.errors import TraceError
-from icarus_lite.symbols import Percept
+from icarus_lite.symbols import Outcome, Percept
 from icarus_lite.trace.frames import outcome_from_json
 from icarus_lite.trace.record import FORMAT, VERSION
 
@@ -61,7 +61,7 @@ def read_trace(path: str | Path) -> Trace:
     return Trace(records[0], tuple(records[1:]), warning)
 
 
-def inputs_of(record: Mapping[str, object]) -> tuple[tuple[Percept, ...], tuple[object, ...]]:
+def inputs_of(record: Mapping[str, object]) -> tuple[tuple[Percept, ...], tuple[Outcome, ...]]:
     """Give what entered a recorded cycle: its percepts and outcomes, to replay it."""
     rows = record.get("percepts")
     outcomes = record.get("outcomes")

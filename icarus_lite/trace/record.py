@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import Self
@@ -12,21 +12,32 @@ from typing import Self
 from icarus_lite._version import __version__
 from icarus_lite.agent import Decision
 from icarus_lite.errors import TraceError
-from icarus_lite.execution import SkillPath
+from icarus_lite.execution import GoalChange, Request, SkillPath
 from icarus_lite.inference import Assertion, Support
-from icarus_lite.language.syntax import Domain
+from icarus_lite.language.syntax import Atom, Domain
 from icarus_lite.symbols import Outcome, Percept
+from icarus_lite.trace.plans import plan_row
 
 FORMAT = "icarus-trace"
-VERSION = 1
+VERSION = 2
+"""Of the lines. Version 1 had no `asserted`, so that nothing could be asked of it later."""
 
 
-def header(domain: Domain, goals: Sequence[object], **extra: object) -> dict[str, object]:
+def header(
+    domain: Domain,
+    goals: Sequence[object],
+    *,
+    intentions: Sequence[object] = (),
+    given: Sequence[Atom] = (),
+    **extra: object,
+) -> dict[str, object]:
     """Give the first line of a trace: what ran, on which text, with which settings.
 
     Args:
         domain: The domain; its text goes in whole, so that the trace explains itself.
         goals: The goals of the agent.
+        intentions: The skills it is to carry out.
+        given: The facts it begins with, as in a task's `:init`.
         extra: Whatever the caller wants recorded: task, robot, seed, configuration.
     """
     texts = [domain.source.text, *(source.text for source in domain.source.included)]
@@ -44,6 +55,8 @@ def header(domain: Domain, goals: Sequence[object], **extra: object) -> dict[str
             ],
         },
         "goals": [str(goal) for goal in goals],
+        "intentions": [str(intention) for intention in intentions],
+        "given": [str(fact) for fact in given],
         **extra,
     }
 
@@ -67,9 +80,23 @@ def cycle_record(
             for b in decision.added
         ],
         "removed": [str(belief) for belief in decision.removed],
+        "asserted": list(_asserted(decision)),
         "goals": [{"goal": str(g.goal), "satisfied": g.satisfied} for g in decision.goals],
         "path": [str(step.action) for step in decision.path],
+        "plan": None if decision.plan is None else plan_row(decision.plan),
         "skills": None if decision.skill_path is None else _skill_path(decision.skill_path),
+        "told": [_told(each) for each in decision.told],
+        "agenda": [
+            {
+                "goal": each.name,
+                "priority": each.priority,
+                "maintain": each.maintain,
+                "standing": str(each.standing),
+                "reason": each.reason,
+            }
+            for each in decision.agenda
+        ],
+        "request": None if decision.request is None else _request(decision.request),
         "intentions": [{"skill": str(i.skill), "done": i.done} for i in decision.intentions],
         "decision": {
             "kind": str(decision.kind),
@@ -84,6 +111,41 @@ def cycle_record(
         "failures": [{"reason": str(f.reason), "text": f.text} for f in decision.failures],
         "notes": list(decision.state.notes),
         **extra,
+    }
+
+
+def _asserted(decision: Decision) -> Iterator[dict[str, object]]:
+    """Give what actions have asserted in this cycle, attachments last, attributes included.
+
+    With `removed` this tells at any cycle which effects persist: see `Recording`.
+    """
+    state = decision.state
+    for belief, cause in state.asserted():
+        if cause.cycle == decision.cycle:
+            row: dict[str, object] = {"belief": str(belief), "action": str(cause.action)}
+            if belief.attributes:
+                row["attributes"] = dict(belief.attributes)
+            yield row
+
+
+def _told(change: GoalChange) -> dict[str, object]:
+    """Give a goal that was added, or the name alone of one that was removed."""
+    if not change.goals:
+        return {"removed": change.name}
+    return {
+        "added": change.name,
+        "goals": [str(each) for each in change.goals],
+        "priority": change.priority,
+        "maintain": change.maintain,
+    }
+
+
+def _request(request: Request) -> dict[str, object]:
+    return {
+        "agent": request.agent,
+        "action": str(request.action),
+        "sentence": request.sentence,
+        "since": request.since,
     }
 
 
@@ -129,8 +191,11 @@ def ensure_writable(path: str | Path) -> None:
     """
     try:
         Path(path).parent.mkdir(parents=True, exist_ok=True)
+        existed = Path(path).exists()
         with Path(path).open("a", encoding="utf-8"):
             pass
+        if not existed:
+            Path(path).unlink()
     except OSError as error:
         raise TraceError(f"cannot be written: {error.strerror}", path=str(path)) from error
 

@@ -108,7 +108,7 @@ def _in_turn(
     if _is_trace(path):
         for number, record in enumerate(read_trace(path).cycles, 2):
             percepts, outcomes = inputs_of(record)
-            yield f"{path}:{number}", percepts, outcomes  # type: ignore[misc] # see inputs_of
+            yield f"{path}:{number}", percepts, outcomes
         return
     for frame in read_frames(path):
         yield f"{path}:{frame.line}", frame.percepts, frame.outcomes

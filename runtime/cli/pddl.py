@@ -46,10 +46,12 @@ def export(
     or that of a test of the domain.
     """
     from icarus_lite.language.pddl import export_task, inlined, write_domain, write_problem
+    from icarus_lite.language.teams import domain_of
     from runtime.cli.starting import Known, find_task, start_state
 
-    domain = load(file)
-    chosen = find_task(domain, task)
+    whole = load(file)
+    chosen = find_task(whole, task)
+    domain = domain_of(whole, others=chosen.agents)
     start = start_state(domain, chosen, frames)
     exported = export_task(domain, chosen.name, chosen.goals, Known(start))
     pddl_domain, pddl_problem = exported.domain, exported.problem

@@ -29,6 +29,7 @@ _TYPES: Mapping[Role, types.SemanticTokenTypes] = MappingProxyType(
         Role.NUMBER: types.SemanticTokenTypes.Number,
         Role.STRING: types.SemanticTokenTypes.String,
         Role.NAME: types.SemanticTokenTypes.Namespace,
+        Role.AGENT: types.SemanticTokenTypes.Namespace,
         Role.COMMENT: types.SemanticTokenTypes.Comment,
     }
 )

@@ -21,15 +21,23 @@ COMMANDS = (
     "cater",
     "check",
     "controller",
+    "diff",
     "explain-rule",
     "fmt",
     "infer",
     "lsp",
     "pddl",
     "plan",
+    "repl",
+    "replay",
+    "report",
     "run",
     "test",
     "track",
+    "view",
+    "when",
+    "why",
+    "why-not",
 )
 DRY = "192.0.2.1"  # an address for documentation: nobody is ever there
 FRAMES = [

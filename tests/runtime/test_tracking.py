@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import re
+from dataclasses import fields
 from pathlib import Path
 
 import pytest
@@ -97,6 +99,40 @@ def test_an_action_that_names_what_was_never_seen_is_told_once(cater: Path) -> N
     assert notes[0].startswith("frame 2: (contain …) names snitch-9, which has not been anchored")
 
 
+@pytest.mark.parametrize(
+    ("name", "args", "reason"),
+    [
+        ("contian", ("cone-1", "cone-1"), "is no action of the domain (did you mean contain?); it"),
+        ("explode", (), "(explode …) is no action of the domain; it attaches and detaches nothing"),
+        (
+            "contain",
+            ("cone-1",),
+            "(contain cone-1) names 1 of the 2 objects it is done with; it",
+        ),
+    ],
+)
+def test_an_action_that_means_nothing_is_told_once(
+    cater: Path, name: str, args: tuple[str, ...], reason: str
+) -> None:
+    cone = Detection("cone", (90, 85, 130, 125))
+    action = RecordedAction(name, args)
+    frames = [RecordedFrame(n, (cone,), (action,) if n > 1 else ()) for n in range(5)]
+    notes: list[str] = []
+    list(track(frames, AnchoringParameters(), load_domain(cater), notes.append))
+    assert len(notes) == 1
+    assert notes[0].startswith("frame 2: (")
+    assert reason in notes[0]
+
+
+def test_the_actions_of_the_domain_are_not_remarked_on(cater: Path) -> None:
+    cone = Detection("cone", (90, 85, 130, 125))
+    actions = tuple(RecordedAction(name, ("cone-1",)) for name in ("slide", "rotate", "pick-place"))
+    notes: list[str] = []
+    frames = [RecordedFrame(0, (cone,), actions)]
+    list(track(frames, AnchoringParameters(), load_domain(cater), notes.append))
+    assert notes == []
+
+
 def test_the_parameters_come_from_a_file_and_tau_goes_before_it(tmp_path: Path) -> None:
     path = tmp_path / "anchoring.yaml"
     path.write_text("tau: 900\nconfidence_gain: 0.25\nunique_types: [snitch]\n")
@@ -105,6 +141,13 @@ def test_the_parameters_come_from_a_file_and_tau_goes_before_it(tmp_path: Path) 
     assert (parameters.tau, parameters.confidence_gain) == (900, 0.25)
     assert parameters.unique_types == {"snitch"}
     assert read_parameters(path, 50.0).tau == 50
+
+
+def test_the_page_for_users_has_every_parameter(root: Path) -> None:
+    page = (root / "docs" / "how-to" / "track.md").read_text()
+    rows = [line.split("|")[1] for line in page.splitlines() if line.startswith("| `")]
+    named = {name for row in rows for name in re.findall("`([a-z_]+)`", row)}
+    assert {field.name for field in fields(AnchoringParameters)} <= named
 
 
 @pytest.mark.parametrize(

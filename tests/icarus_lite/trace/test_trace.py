@@ -100,7 +100,7 @@ def test_damage_in_the_middle_is_an_error_with_its_line(tmp_path: Path) -> None:
     [
         ("", "no header"),
         ('{"cycle": 0}\n', "no header"),
-        ('{"format": "icarus-trace", "version": 99}\n', "version 99; this icarus reads version 1"),
+        ('{"format": "icarus-trace", "version": 99}\n', "version 99; this icarus reads version 2"),
     ],
 )
 def test_a_foreign_file_is_told_apart(tmp_path: Path, first: str, message: str) -> None:

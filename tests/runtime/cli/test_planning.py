@@ -101,9 +101,72 @@ def test_a_goal_that_holds_needs_no_step(domain: Path, frames: Path) -> None:
     assert (status, out) == (0, "nothing to do: the goal holds already\n")
 
 
+def test_explain_says_what_each_step_is_for_and_how_the_plan_was_found(
+    domain: Path, frames: Path
+) -> None:
+    arguments = ("plan", domain, "--goal", "((on a b) (on b c))", "--frames", frames, "--explain")
+    status, out, err = icarus(*arguments)
+    assert (status, err) == (0, "")
+    assert out.splitlines()[:8] == [
+        "(move b c), step 1 of 2",
+        "  needs (clear b): holds",
+        "  needs (clear c): holds",
+        "  brings about (on b c), a goal",
+        "",
+        "(move a b), step 2 of 2",
+        "  needs (clear a): holds",
+        "  needs (clear b): holds",
+    ]
+    assert "  means-ends analysis: a plan of 2 steps, 4 subgoals" in out.splitlines()
+    status, out, _ = icarus(*arguments, "--json")
+    found = json.loads(out)
+    assert (found["solved"], found["cost"]) == (True, 2)
+    assert {"producer": 0, "consumer": None} in [
+        {key: link[key] for key in ("producer", "consumer")} for link in found["links"]
+    ]
+    assert found["account"]["shortest"] is True
+
+
+def test_explain_tells_why_there_is_no_plan(domain: Path) -> None:
+    status, out, err = icarus("plan", domain, "--task", "deep", "--explain", "--json")
+    found = json.loads(out)
+    assert (status, err) == (1, "")
+    assert found["final"] is True
+    assert "(on a a)" in found["reason"]
+
+
+def test_macro_shows_a_skill_that_fits_the_domain(domain: Path, tmp_path: Path) -> None:
+    status, out, err = icarus("plan", domain, "--task", "given", "--macro")
+    assert (status, err) == (0, "")
+    assert out.startswith("(skills\n  ((achieve-on ?a ?b)\n")
+    adopted = tmp_path / "adopted.icr"
+    icarus("fmt", domain)
+    adopted.write_text(domain.read_text() + "\n" + out)
+    assert icarus("check", adopted)[0] == 0
+    assert icarus("fmt", "--check", adopted)[0] == 0
+    status, out, _ = icarus("plan", domain, "--task", "given", "--macro", "--json")
+    assert json.loads(out)["macro"].startswith("(skills")
+
+
+def test_limits_are_kept_to_and_improvement_gives_no_longer_plan(
+    domain: Path, frames: Path
+) -> None:
+    ask = ("plan", domain, "--goal", "((on a b) (on b c))", "--frames", frames)
+    status, out, err = icarus(*ask, "--limit", "1")
+    assert (status, out) == (1, "")
+    assert err == "no plan: no plan among the first 1 situations imagined\n"
+    for options in (["--limit", "0"], ["--seconds", "20"], ["--improve", "0.1"]):
+        status, out, _ = icarus(*ask, *options)
+        assert (status, out.count("\n")) == (0, 2)
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
+        (["--task", "given", "--limit", "-3"], "--limit -3: it cannot be less than 0"),
+        (["--task", "given", "--seconds", "-0.5"], "--seconds -0.5: it cannot be less than 0"),
+        (["--task", "given", "--improve", "inf"], "--improve inf: it cannot be less than 0"),
+        (["--task", "given", "--limit", "many"], "--limit"),
         ([], "either --task NAME or --goal"),
         (["--task", "given", "--goal", "(on a b)"], "either --task NAME or --goal"),
         (["--task", "gievn"], "has no task gievn; its tasks are: given, known-from-a-test"),

@@ -1,0 +1,1 @@
+"""Planning problems of the competitions: where they come from, who solves them, who judges."""

@@ -1,0 +1,235 @@
+"""The loop while another agent does its part: the arm keeps still, and the wait has an end."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import pytest
+from rich.console import Console
+
+from aapa import Anchor, Anchoring, Camera, Detection
+from icarus_lite import Action, Agent, DecisionKind, Outcome, Status
+from icarus_lite.language import check_domain, parse_domain
+from icarus_lite.trace import Recording, TraceWriter, header, read_trace
+from icarus_lite.trace.replaying import replay
+from runtime.config import load_robot
+from runtime.drivers import PARK, ArmState
+from runtime.loop import Loop, LoopLimits
+from runtime.run import anchoring_parameters
+from runtime.view import RunView
+
+CONFIG = load_robot("ur5")
+CAMERA = Camera(
+    320, 240, 233.0, (0.4, 0.0, 0.6), np.array([[0.0, -1.0, 0.0], [-1.0, 0, 0], [0, 0, -1.0]])
+)
+TEXT = """
+(agents human)
+(percepts
+  (object ^type ^x ^y ^z ^width ^height ^seen ^status)
+  (hand ^x ^y ^z ^reach ^gripping))
+(concepts
+  ((close-by ?c) :elements ((object ?c ^type case ^y ?y)) :tests ((> ?y -0.15))))
+(skills
+  ((push-here ?c)
+   :agent human
+   :elements ((object ?c ^type case) (not (close-by ?c)))
+   :effects ((close-by ?c))
+   :request "please push ?c closer"
+   :timeout 20)
+  ((touch ?h ?c)
+   :elements ((hand ?h) (close-by ?c))
+   :actions ((*touch ?h ?c))
+   :effects ((touched ?c))))
+(task 2.2 "Touch the case" :robot ur5 :agents (human) :goal ((touched case)))
+"""
+DOMAIN, FOUND = parse_domain(TEXT)
+assert DOMAIN is not None, FOUND
+assert not check_domain(DOMAIN)
+STEP = 0.02
+"""How far the case is pushed between two looks, in m."""
+
+TOUCH = "(touch hand1 case)"
+PUSH = Action("push-here", ("case",))
+
+
+class Body:
+    """An arm at rest that needs two polls for whatever it is told."""
+
+    commands = frozenset({"touch", "rest"})
+
+    def __init__(self) -> None:
+        self.started: list[str] = []
+        self.time_s = 0.0
+        self.polls = 2
+        self._action: Action | None = None
+        self._left = 0
+
+    @property
+    def moves(self) -> bool:
+        return self._action is not None
+
+    def state(self) -> ArmState:
+        pose = (0.3, 0.0, 0.42, 0.0, 3.14159, 0.0)
+        return ArmState(
+            joints=(0.0,) * 6,
+            tcp_pose=pose,
+            gripper_closed=False,
+            gripped=False,
+            timestamp_s=self.time_s,
+        )
+
+    def start(
+        self, action: Action, commands: Sequence[Action], anchors: Mapping[str, Anchor]
+    ) -> None:
+        del anchors
+        assert self._action is None
+        assert commands
+        self.started.append(str(action))
+        self._action, self._left = action, self.polls
+
+    def poll(self, anchors: Mapping[str, Anchor]) -> Outcome | None:
+        del anchors
+        self.time_s += 1
+        if self._action is None:
+            return None
+        self._left -= 1
+        if self._left:
+            return Outcome(self._action, Status.RUNNING)
+        action, self._action = self._action, None
+        return Outcome(action)
+
+    def stop(self) -> None:
+        self._action = None
+
+    def close(self) -> None:
+        self.stop()
+
+
+class Eyes:
+    """Sees the case where it is."""
+
+    def __init__(self) -> None:
+        self.y = -0.2
+
+    def update(self, arm: ArmState) -> None:
+        del arm
+
+    def look(self) -> tuple[list[Detection], Camera]:
+        place = (0.42, self.y, 0.04)
+        u, v, _ = CAMERA.project(place)
+        box = (u - 8, v - 8, u + 8, v + 8)
+        return [Detection("case", box, 0.9, place, (0.04, 0.02))], CAMERA
+
+
+def run(human, limits=None, trace=None):
+    """Run the task with somebody who is told what each cycle has come to."""
+    body, eyes, reports = Body(), Eyes(), []
+
+    def observe(report):
+        reports.append(report)
+        human(report, body, eyes)
+
+    task = DOMAIN.tasks[0]
+    agent = Agent(DOMAIN, task.goals, others=task.agents)
+    parameters = Anchoring(anchoring_parameters())
+    loop = Loop(agent, parameters, body, eyes, CONFIG, trace=trace, observer=observe, limits=limits)
+    return loop.run(), body, reports
+
+
+def pushes_after(cycles):
+    """Give a person who begins to do what is asked so many cycles later, and takes some time."""
+    asked = []
+
+    def human(report, _body, eyes):
+        if report.decision.kind is DecisionKind.REQUEST:
+            asked.append(report.decision.cycle)
+        if asked and report.decision.cycle - asked[-1] >= cycles:
+            eyes.y = min(eyes.y + STEP, -0.1)
+
+    return human
+
+
+def test_the_arm_keeps_still_until_the_other_agent_has_done_its_part():
+    result, body, reports = run(pushes_after(5))
+    assert result.achieved
+    assert body.started == [TOUCH, str(PARK)]
+    kinds = [report.decision.kind for report in reports]
+    asked, acting = kinds.index(DecisionKind.REQUEST), kinds.index(DecisionKind.ACT)
+    assert acting - asked > 5
+    assert set(kinds[asked + 1 : acting]) == {DecisionKind.AWAIT}
+    assert all(not report.decision.commands for report in reports[:acting])
+    assert [(each.cycle, each.action, each.status) for each in result.actions] == [
+        (asked, str(PUSH), "requested"),
+        (acting, TOUCH, "succeeded"),
+    ]
+
+
+def test_without_an_answer_the_run_ends_with_the_reason():
+    result, body, reports = run(lambda *_: None, LoopLimits(patience=3))
+    assert not result.achieved
+    assert "human does not do (push-here case): no answer within 20 s" in result.reason
+    assert body.started == []
+    assert [each.status for each in result.actions] == ["failed"]
+    waits = [r for r in reports if r.decision.kind is DecisionKind.AWAIT]
+    assert len(waits) == 21  # a cycle is a second on this arm's clock
+
+
+def test_an_arm_on_its_way_to_rest_stops_when_somebody_is_asked():
+    body, eyes, moving = Body(), Eyes(), []
+    eyes.y = -0.12
+    body.polls = 12
+    agent = Agent(DOMAIN, ["(touched case)", "(close-by case)"])
+    person = pushes_after(2)
+
+    def observe(report):
+        resting = str(PARK) in body.started
+        if resting and not moving:
+            eyes.y -= STEP  # it is taken away again while the arm goes back to rest
+        if report.decision.request is not None:
+            moving.append((report.decision.kind, body.moves))
+        person(report, body, eyes)
+
+    Loop(agent, Anchoring(anchoring_parameters()), body, eyes, CONFIG, observer=observe).run()
+    assert moving[0] == (DecisionKind.REQUEST, True)  # it was on its way
+    assert all(not moves for _, moves in moving[1:])  # and stopped
+
+
+def test_the_request_is_shown_and_recorded(tmp_path):
+    path = tmp_path / "trace.jsonl"
+    task = DOMAIN.tasks[0]
+    first = header(DOMAIN, task.goals, others=list(task.agents))
+    shown = io.StringIO()
+    view = RunView(Console(file=shown), "task 2.2")
+    person = pushes_after(2)
+
+    def human(report, body, eyes):
+        view.show(report)
+        person(report, body, eyes)
+
+    with view, TraceWriter(path, first) as writer:
+        result, _, _ = run(human, trace=writer)
+    assert result.achieved
+    assert "asked human: please push case closer" in shown.getvalue()
+    kinds = [row["decision"]["kind"] for row in read_trace(path).cycles]
+    recorded = [row["request"] for row in read_trace(path).cycles]
+    asked = kinds.index("request")
+    assert recorded[asked] == {
+        "agent": "human",
+        "action": "(push-here case)",
+        "sentence": "please push case closer",
+        "since": asked,
+    }
+    assert [row is not None for row in recorded] == [k in ("request", "await") for k in kinds]
+    assert replay(Recording(path)).decisions is None
+
+
+@pytest.mark.parametrize("others", [(), ("human",)])
+def test_whoever_does_not_take_part_is_not_asked(others):
+    agent = Agent(DOMAIN, DOMAIN.tasks[0].goals, others=others)
+    body, eyes = Body(), Eyes()
+    limits = LoopLimits(cycles=6)
+    parameters = Anchoring(anchoring_parameters())
+    result = Loop(agent, parameters, body, eyes, CONFIG, limits=limits).run()
+    assert [each.action for each in result.actions] == ([str(PUSH)] if others else [])
