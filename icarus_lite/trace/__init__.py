@@ -15,6 +15,7 @@ from icarus_lite.trace.reader import Trace, inputs_of, read_trace
 from icarus_lite.trace.record import TraceWriter, cycle_record, ensure_writable, header
 from icarus_lite.trace.recording import Instant, Recording
 from icarus_lite.trace.replaying import Divergence, Replay, replay
+from icarus_lite.trace.serving import serves
 from icarus_lite.trace.telling import Episode, Story, tell
 
 __all__ = [
@@ -44,6 +45,7 @@ __all__ = [
     "read_frames",
     "read_trace",
     "replay",
+    "serves",
     "tell",
     "when",
 ]

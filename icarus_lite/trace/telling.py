@@ -15,6 +15,7 @@ from itertools import groupby, zip_longest
 from icarus_lite.inference import ATTACHED, Period
 from icarus_lite.symbols import Status
 from icarus_lite.trace.recording import Recording
+from icarus_lite.trace.serving import serves
 
 _MOST = 3
 
@@ -29,6 +30,7 @@ class Episode:
         aims: What it was for.
         reason: Why it was chosen.
         plan: The steps that were to follow.
+        serves: What it was to bring about, and for which later step or goal.
         rejected: The skills that were considered besides, each with why it was not chosen.
         last: The cycle in which its end was reported; None if none was.
         status: How it ended.
@@ -43,6 +45,7 @@ class Episode:
     reason: str
     plan: tuple[str, ...] = ()
     rejected: tuple[tuple[str, str], ...] = ()
+    serves: tuple[str, ...] = ()
     last: int | None = None
     status: str = "not reported"
     ended: str = ""
@@ -134,7 +137,9 @@ def tell(recording: Recording) -> Story:
         decision = record.get("decision")
         if isinstance(decision, dict):
             if decision.get("kind") == "act":
-                found.episodes.append(_begin(cycle, record, decision))
+                episode = _begin(cycle, record, decision)
+                episode.serves = tuple(serves(recording, cycle))
+                found.episodes.append(episode)
             elif decision.get("kind") == "impasse":
                 found.stood.append((cycle, str(decision.get("reason"))))
         found.last = record
@@ -205,6 +210,8 @@ def _episode(number: int, episode: Episode) -> Iterator[str]:
     yield f"     It was for {aims or 'nothing that is on record'}; chosen as {episode.reason}."
     if episode.plan:
         yield f"     Then it was to do {', '.join(episode.plan)}."
+    for text in episode.serves[:_MOST]:
+        yield f"     {text[0].upper()}{text[1:]}."
     for skill, why in episode.rejected[:_MOST]:
         yield f"     It did not choose {skill}: {why}."
     if episode.status == "succeeded":

@@ -9,7 +9,7 @@ from rich.console import RenderableType
 from icarus_lite.inference import match
 from icarus_lite.language.syntax import Atom
 from icarus_lite.symbols import Belief
-from icarus_lite.trace import compare, matching, parse_action, pattern_of
+from icarus_lite.trace import compare, matching, parse_action, pattern_of, serves
 from icarus_lite.trace import when as times_of
 from runtime.repl.command import Command, CommandError, Takes, number
 from runtime.repl.session import Session
@@ -83,6 +83,7 @@ def explain(session: Session, text: str) -> Iterator[RenderableType]:
     if isinstance(skills, dict):
         told.append(f"  for {' '.join(map(str, skills.get('aims', ())))}")
         told += [f"    through {level['skill']}" for level in skills.get("levels", ())[:-1]]
+    told += [f"  {text}" for text in serves(session.recording, cycle)]
     plan = record.get("path")
     if isinstance(plan, list) and len(plan) > 1:
         told.append(f"  then {', '.join(map(str, plan[1:]))}")
@@ -100,7 +101,7 @@ def _is_meant(pattern: Atom, action: str) -> bool:
 
 def _effects(session: Session, action: str, cycle: int) -> Iterator[str]:
     """Say what came of an action: how it ended, and what its success brought about."""
-    for later, outcome in session.recording.reports(cycle, session.recording.cycles[-1]):
+    for later, outcome in session.recording.reports(cycle + 1, session.recording.cycles[-1]):
         if str(outcome.action) != action or outcome.status == "running":
             continue
         reason = f": {outcome.reason}" if outcome.reason else ""

@@ -63,6 +63,7 @@ def _actions(story: Story) -> Iterator[dict[str, object]]:
             "status": episode.status,
             "why": [f"for {' and '.join(episode.aims)}", f"chosen as {episode.reason}"]
             + ([f"then {', '.join(episode.plan)}"] if episode.plan else [])
+            + list(episode.serves)
             + [f"not {skill}: {why}" for skill, why in episode.rejected]
             + ([episode.ended] if episode.ended else []),
         }

@@ -43,6 +43,10 @@ def test_what_it_did_what_for_and_what_it_led_to(tmp_path: Path) -> None:
     assert "1. (pick-up hand1 hubcover), cycle 0 to 1: succeeded" in text
     assert "Then it was to do (insert hubcover case)." in text
     assert "From then on it believed (attached hubcover case)" in text
+    assert (
+        "It was to bring about (holding hand1 hubcover), which (insert hubcover case) needs."
+        in text
+    )
     assert "Nothing: all went as planned." in text
     assert (
         "Cycle 1 to 2: hubcover was not seen; it was attached to hand1, "

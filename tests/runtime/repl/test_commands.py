@@ -121,6 +121,14 @@ def test_explain(session: Session) -> None:
         ask(session, "explain (place-down ?h ?x)")
 
 
+def test_an_action_that_is_tried_again_is_told_from_the_first_try() -> None:
+    session = live()
+    ask(session, "step", "outcome failed it slipped", "step 2")
+    text = ask(session, "goto 1", "explain")
+    assert "(pick-up hand1 hubcover) was started in cycle 1" in text
+    assert "it succeeded in cycle 2" in text
+
+
 def test_what_is_typed_wrongly(session: Session) -> None:
     with pytest.raises(CommandError, match="no command `hierachy`; did you mean `hierarchy`"):
         ask(session, "hierachy")
