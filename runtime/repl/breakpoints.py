@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 from icarus_lite.inference import match
 from icarus_lite.language.syntax import Atom, Domain, Moment
-from icarus_lite.symbols import Action, Belief
+from icarus_lite.symbols import Belief
 from icarus_lite.trace import matching, parse_action, pattern_of
 from runtime.repl.command import CommandError
 
@@ -76,8 +76,8 @@ def read(text: str, domain: Domain) -> Stop:
         return Stop(word, condition=wanted)
     if word.startswith("("):
         pattern = pattern_of(body)
-        skills = {skill.head.predicate for skill in domain.skills}
-        moment = Moment.START if pattern.predicate in skills else Moment.GAIN
+        done = {each.predicate for skill in domain.skills for each in (skill.head, *skill.actions)}
+        moment = Moment.START if pattern.predicate in done else Moment.GAIN
         return Stop(moment=moment, pattern=pattern, condition=wanted)
     if word in WORDS and rest.strip():
         return Stop(moment=WORDS[word], pattern=pattern_of(rest), condition=wanted)
@@ -119,8 +119,7 @@ def _moment(stop: Stop, session: Session) -> str:
     if stop.moment is Moment.LOSS:
         return _first(stop.pattern, removed, "is no longer believed")
     if stop.moment is Moment.START:
-        started = _started(session.record)
-        return "" if started is None else _first(stop.pattern, (started,), "is started")
+        return _first(stop.pattern, _started(session.record), "is started")
     status = "succeeded" if stop.moment is Moment.SUCCESS else "failed"
     ended = [
         Belief(outcome.action.name, outcome.action.args)
@@ -137,9 +136,12 @@ def _first(pattern: Atom, facts: tuple[Belief, ...], what: str) -> str:
     return ""
 
 
-def _started(record: Mapping[str, object]) -> Belief | None:
+def _started(record: Mapping[str, object]) -> tuple[Belief, ...]:
+    """Give the skill that is started in a cycle, and the commands that the driver is given."""
     decision = record.get("decision")
     if not isinstance(decision, dict) or decision.get("kind") != "act":
-        return None
-    action: Action = parse_action(str(decision["action"]))
-    return Belief(action.name, action.args)
+        return ()
+    commands = decision.get("commands")
+    texts = [decision["action"], *(commands if isinstance(commands, list) else ())]
+    actions = [parse_action(str(text)) for text in texts]
+    return tuple(Belief(action.name, action.args) for action in actions)

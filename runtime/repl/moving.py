@@ -12,6 +12,10 @@ from runtime.repl.command import Command, CommandError, Takes, no_words, number
 from runtime.repl.session import Session
 from runtime.repl.showing import line, lines, summary
 
+_NOTHING_NEW = (
+    "nothing changes any more until you say what is perceived, or what became of an action"
+)
+
 
 def goto(session: Session, text: str) -> Iterator[RenderableType]:
     """Look at a cycle."""
@@ -58,6 +62,9 @@ def cont(session: Session, text: str) -> Iterator[RenderableType]:
                 yield line(f"stopped: {why}  [{stop}]", "bold yellow")
                 yield summary(session.record)
                 return
+        if session.waits:
+            yield line(_NOTHING_NEW, "yellow")
+            break
     yield summary(session.record)
 
 
@@ -67,6 +74,9 @@ def until(session: Session, text: str) -> Iterator[RenderableType]:
     while session.forward():
         if matching(pattern, session.instant):
             yield summary(session.record)
+            return
+        if session.waits:
+            yield line(f"{_NOTHING_NEW}; nothing matched {pattern}", "yellow")
             return
     yield line(f"that was the last cycle; nothing matched {pattern}", "yellow")
 
@@ -144,8 +154,8 @@ MOVING = (
     Command(
         "break",
         "[WHEN] [if PATTERN]",
-        "Stop `cont` when a belief is gained or lost, a skill started, succeeded or failed; at a "
-        "goal, impasse or failure. Without words: list what is set.",
+        "Stop `cont` when a belief is gained or lost, a skill or command started, a skill "
+        "succeeded or failed; at a goal, impasse or failure. Without words: list what is set.",
         "break lost (free ?hand) if (object case ^seen no)",
         set_stop,
         Takes.PATTERN,

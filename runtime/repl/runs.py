@@ -21,6 +21,9 @@ class LiveRun(Protocol):
 
     agent: Agent
 
+    waits: bool
+    """Whether further cycles would be like the last one until the person says something."""
+
     def advance(self) -> Mapping[str, object] | None:
         """Run one cycle and give its line of the trace; None if the run has come to its end."""
 
@@ -45,6 +48,7 @@ class TypedRun:
         self.agent = agent
         self.percepts = {(each.type, each.name): each for each in percepts}
         self.outcomes: list[Outcome] = []
+        self.waits = False
         self._frames: Iterator[Frame] | None = None
         self._started: Action | None = None
 
@@ -70,6 +74,8 @@ class TypedRun:
         self.outcomes = []
         going = decision.kind in (DecisionKind.ACT, DecisionKind.CONTINUE)
         self._started = decision.action if going else None
+        changed = decision.added or decision.removed or outcomes
+        self.waits = not (changed or going or self._frames)
         return cycle_record(decision, percepts, outcomes)
 
     def close(self) -> None:
@@ -112,6 +118,7 @@ class CellRun:
     ) -> None:
         self.agent = agent
         self.words = words
+        self.waits = False
         self._reports: list[CycleReport] = []
         self._loop = make(self._reports.append)
         self._let_go = let_go

@@ -95,6 +95,11 @@ class Session:
         self._place = len(self.recording) - 1
         return True
 
+    @property
+    def waits(self) -> bool:
+        """Whether a live run has come to where only the person can change anything."""
+        return self.live is not None and self.is_at_end and self.live.waits
+
     def backward(self) -> bool:
         """Go back by one cycle; False at the first."""
         if self._place <= 0:

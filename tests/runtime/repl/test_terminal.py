@@ -12,6 +12,8 @@ import pyte
 import pytest
 from recorded_runs import record
 
+from runtime.repl import COMMANDS
+
 GEARBOX = Path(__file__).parents[3] / "domains" / "gearbox.icr"
 _DEADLINE_S = 30
 _LINES, _COLUMNS = 50, 120
@@ -40,8 +42,12 @@ class Terminal:
 
     def sees(self, text: str) -> None:
         """Wait until a text stands on the screen."""
-        while not any(text in line for line in self._screen.display):
+        while not self.shows(text):
             self._stream.feed(self._child.read_nonblocking(4096, timeout=_DEADLINE_S))
+
+    def shows(self, text: str) -> bool:
+        """Tell whether a text stands on the screen."""
+        return any(text in line for line in self._screen.display)
 
     def types(self, text: str) -> None:
         """Type keys as they are."""
@@ -140,5 +146,30 @@ def test_a_domain_runs_live(tmp_path: Path) -> None:
         terminal.sees("by its definition")
         terminal.types("\x04")
         assert terminal.ends() == 0
+    finally:
+        terminal.close()
+
+
+def test_every_command_as_its_help_gives_it(tmp_path: Path) -> None:
+    terminal = Terminal(tmp_path, str(GEARBOX), "--task", "1.1")
+    try:
+        terminal.sees("gearbox>")
+        scene = (
+            "(hand hand1 ^reach 0.85)",
+            "(object hubcover ^type hubcover ^x 0.4 ^y 0.1 ^z 0.01 ^seen yes)",
+            "(object case ^type case ^x 0.4 ^y -0.1 ^z 0.03 ^seen yes)",
+        )
+        for percept in scene:
+            terminal.enters(f"percept {percept}")
+        terminal.enters("step 3")
+        terminal.sees("gearbox 2>")
+        typed = [command.example for command in COMMANDS if command.name != "quit"]
+        for number, line in enumerate(typed):
+            terminal.enters(line)
+            terminal.enters(f"(asked-{number} ?x)")
+            terminal.sees(f"nothing matches (asked-{number} ?x)")  # so the line was answered
+            assert not terminal.shows("Traceback")
+        terminal.enters("quit")
+        terminal.ends()
     finally:
         terminal.close()
