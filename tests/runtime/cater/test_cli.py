@@ -2,28 +2,13 @@
 
 from __future__ import annotations
 
-import io
 import json
 import re
-import sys
-from contextlib import redirect_stderr, redirect_stdout
 
 import pytest
+from command_line import icarus
 
 from aapa.lacater.models import PAPER_MODELS
-from runtime.cli import main
-
-
-def icarus(*args):
-    """Give status, standard output and standard error of a call in this process."""
-    out, err = io.StringIO(), io.StringIO()
-    argv, sys.argv = sys.argv, ["icarus", *map(str, args)]
-    try:
-        with redirect_stdout(out), redirect_stderr(err), pytest.raises(SystemExit) as ended:
-            main()
-    finally:
-        sys.argv = argv
-    return int(ended.value.code or 0), out.getvalue(), err.getvalue()
 
 
 def test_the_table_has_a_line_a_model_and_a_column_a_task(tmp_path, dataset):

@@ -2,30 +2,16 @@
 
 from __future__ import annotations
 
-import io
 import json
 import re
-import sys
-from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 
 import pytest
+from command_line import icarus
 
 from icarus_lite.language import load_domain
-from runtime.cli import main
 
 PROBLEMS = Path(__file__).parents[2] / "icarus_lite" / "language" / "pddl" / "problems"
-
-
-def icarus(*args: str | Path) -> tuple[int, str, str]:
-    out, err = io.StringIO(), io.StringIO()
-    argv, sys.argv = sys.argv, ["icarus", *map(str, args)]
-    try:
-        with redirect_stdout(out), redirect_stderr(err), pytest.raises(SystemExit) as ended:
-            main()
-    finally:
-        sys.argv = argv
-    return int(ended.value.code or 0), out.getvalue(), err.getvalue()
 
 
 def steps(file: Path, task: str) -> list[str]:

@@ -2,29 +2,14 @@
 
 from __future__ import annotations
 
-import io
 import json
-import sys
-from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 
 import pytest
-
-from runtime.cli import main
+from command_line import icarus
 
 GOOD = '(percepts (o))\n(test "one" :percepts ((o a)) :expect ((o a)))\n'
 BAD = GOOD + '(test "Two" :percepts ((o a)) :expect ((o b)))\n'
-
-
-def icarus(*args: str | Path) -> tuple[int, str, str]:
-    out, err = io.StringIO(), io.StringIO()
-    argv, sys.argv = sys.argv, ["icarus", *map(str, args)]
-    try:
-        with redirect_stdout(out), redirect_stderr(err), pytest.raises(SystemExit) as ended:
-            main()
-    finally:
-        sys.argv = argv
-    return int(ended.value.code or 0), out.getvalue(), err.getvalue()
 
 
 @pytest.fixture
