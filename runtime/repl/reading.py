@@ -63,11 +63,12 @@ def _typed(session: Session, console: Console) -> Iterator[str]:
     ask: Callable[[str], str] = prompt_session(session).prompt
     while True:
         try:
-            yield ask(_prompt(session))
+            line = ask(_prompt(session))
         except KeyboardInterrupt:
             continue  # the line is dropped, as in a shell
         except EOFError:
             return
+        yield line
 
 
 def _prompt(session: Session) -> str:

@@ -82,7 +82,7 @@ def test_what_nothing_rests_on_may_be_as_it_likes() -> None:
         "(on e d)",
     ]
     assert status.text.endswith("and 1 more: nothing rests on it")
-    assert "kept: surprise (above e d)" in decisions[2].reason
+    assert decisions[2].reason == "next step of the plan, 4 to go"
     assert not decisions[3].plan.surprises  # it is no news any longer
     assert (agent.plan_counts.surprises, agent.plan_counts.kept) == (1, 1)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -17,6 +18,7 @@ from runtime.repl import COMMANDS
 GEARBOX = Path(__file__).parents[3] / "domains" / "gearbox.icr"
 _DEADLINE_S = 30
 _LINES, _COLUMNS = 50, 120
+_PROMPT = re.compile(r"[\w.]+( \d+\*?)?>|\.+")
 
 
 class Terminal:
@@ -45,6 +47,11 @@ class Terminal:
         while not self.shows(text):
             self._stream.feed(self._child.read_nonblocking(4096, timeout=_DEADLINE_S))
 
+    def asks(self) -> None:
+        """Wait until the cursor stands behind a prompt, with nothing typed yet."""
+        while not _PROMPT.fullmatch(self._screen.display[self._screen.cursor.y].rstrip()):
+            self._stream.feed(self._child.read_nonblocking(4096, timeout=_DEADLINE_S))
+
     def shows(self, text: str) -> bool:
         """Tell whether a text stands on the screen."""
         return any(text in line for line in self._screen.display)
@@ -54,7 +61,8 @@ class Terminal:
         self._child.send(text)
 
     def enters(self, text: str) -> None:
-        """Type a line."""
+        """Type a line, once it is asked for."""
+        self.asks()
         self._child.send(f"{text}\r")
 
     def ends(self) -> int:
@@ -102,7 +110,7 @@ def test_tab_completes(terminal: Terminal) -> None:
     terminal.sees("when (store")
     terminal.types("\x15hierar\t")
     terminal.sees("hierarchy")
-    terminal.enters("")
+    terminal.types("\r")
     terminal.sees(" in cycle ")
 
 
@@ -112,9 +120,13 @@ def test_a_wrong_line_is_told_and_the_session_goes_on(terminal: Terminal) -> Non
     terminal.sees("has no cycle 1000: its cycles are 0 to 29")
     terminal.enters("whyy (stored old)")
     terminal.sees("did you mean `why`?")
-    terminal.types("half a line\x03")  # Ctrl-C drops the line
+    terminal.asks()
+    terminal.types("half a line")
+    terminal.sees("run.jsonl 29> half a line")
+    terminal.types("\x03")  # Ctrl-C drops the line
     terminal.enters("where")
     terminal.sees("looking at cycle 29")
+    terminal.asks()
     terminal.types("\x04")  # Ctrl-D
     assert terminal.ends() == 2  # something that was asked could not be answered
 
@@ -144,6 +156,7 @@ def test_a_domain_runs_live(tmp_path: Path) -> None:
         terminal.sees("gearbox 0>")
         terminal.enters("why (free hand1)")
         terminal.sees("by its definition")
+        terminal.asks()
         terminal.types("\x04")
         assert terminal.ends() == 0
     finally:
