@@ -86,7 +86,7 @@ fuzz-engine: $(VENV)/.installed-dev ## beliefs against clingo's on 10,000 random
 	ICARUS_ALL_CASES=1 $(BIN)/python -m pytest -q tests/datalog -k large
 	$(BIN)/python tests/differential/fuzz.py --programs 10000 --cycles 20 --out docs/results/fuzz-engine.md
 
-bench-engine: $(VENV)/.installed-dev ## inference beside CLIPS and clingo, in one run (half an hour)
+bench-engine: $(VENV)/.installed-dev ## inference beside CLIPS and clingo, in one run (a quarter of an hour)
 	$(BIN)/python benchmarks/engine_peers.py --out docs/results/engine.md
 
 bench-engine-rules: $(VENV)/.installed-dev ## how inference grows with the number of rules

@@ -178,7 +178,7 @@ def _ratios(cells: Sequence[Cell]) -> Iterator[str]:
         targets = [TARGETS.get((c.mode, c.count)) for c in row]
         yield f"| {words}, target | {' | '.join(f'≤ {t:g}' if t else '-' for t in targets)} |"
     missed = [
-        f"{cell.mode} at N={cell.count} ({_short(cell.ratio(OURS))}, not {target:g})"
+        f"{cell.mode} at N={cell.count} ({cell.ratio(OURS):.3g}, not {target:g})"
         for cell in cells
         if (target := TARGETS.get((cell.mode, cell.count))) and cell.ratio(OURS) > target
     ]
