@@ -11,7 +11,7 @@ from icarus_lite.trace.asking import (
 )
 from icarus_lite.trace.frames import Frame, beliefs_line, outcome_from_json, read_frames
 from icarus_lite.trace.ground_text import parse_action, parse_belief
-from icarus_lite.trace.reader import Trace, inputs_of, read_trace
+from icarus_lite.trace.reader import Trace, inputs_of, read_trace, stream_trace
 from icarus_lite.trace.record import TraceWriter, cycle_record, ensure_writable, header
 from icarus_lite.trace.recording import Instant, Recording
 from icarus_lite.trace.replaying import Divergence, Replay, replay
@@ -46,6 +46,7 @@ __all__ = [
     "read_trace",
     "replay",
     "serves",
+    "stream_trace",
     "tell",
     "when",
 ]

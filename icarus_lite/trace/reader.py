@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -52,13 +52,46 @@ def read_trace(path: str | Path) -> Trace:
         if not isinstance(record, dict):
             raise TraceError("is not a line of a trace", path=str(path), line=number)
         records.append(record)
-    if not records or records[0].get("format") != FORMAT:
-        raise TraceError("is not a trace: its first line is no header", path=str(path), line=1)
-    if records[0].get("version") != VERSION:
-        found = records[0].get("version")
-        message = f"is a trace of version {found}; this icarus reads version {VERSION}"
-        raise TraceError(message, path=str(path), line=1)
+    _check_header(records[0] if records else {}, str(path))
     return Trace(records[0], tuple(records[1:]), warning)
+
+
+def stream_trace(path: str | Path) -> Iterator[Mapping[str, object]]:
+    """Read a trace line by line, header first, however long it is; only one line is held at a time.
+
+    A last line that is cut off ends it: the run may still be writing.
+
+    Raises:
+        TraceError: as for `read_trace`, when the line is come to.
+    """
+    try:
+        with Path(path).open("rb") as file:
+            for number, line in enumerate(file, 1):
+                if not line.endswith(b"\n"):
+                    return
+                yield _record(line, number, str(path))
+    except OSError as error:
+        raise TraceError(f"cannot be read: {error.strerror}", path=str(path)) from error
+
+
+def _record(line: bytes, number: int, path: str) -> Mapping[str, object]:
+    try:
+        record = json.loads(line.decode("utf-8"))
+    except ValueError:  # what json and the codec raise are both ValueErrors
+        raise TraceError("is not a line of a trace", path=path, line=number) from None
+    if not isinstance(record, dict):
+        raise TraceError("is not a line of a trace", path=path, line=number)
+    if number == 1:
+        _check_header(record, path)
+    return record
+
+
+def _check_header(record: Mapping[str, object], path: str) -> None:
+    if record.get("format") != FORMAT:
+        raise TraceError("is not a trace: its first line is no header", path=path, line=1)
+    if record.get("version") != VERSION:
+        message = f"is a trace of version {record.get('version')}"
+        raise TraceError(f"{message}; this icarus reads version {VERSION}", path=path, line=1)
 
 
 def inputs_of(record: Mapping[str, object]) -> tuple[tuple[Percept, ...], tuple[Outcome, ...]]:

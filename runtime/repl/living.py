@@ -9,7 +9,7 @@ from rich.console import RenderableType
 
 from icarus_lite.inference import ground
 from icarus_lite.language import diagnose_file
-from icarus_lite.language.diagnostics import render
+from icarus_lite.language.diagnostics import Severity, render
 from icarus_lite.symbols import Action, Outcome, Percept, Status
 from icarus_lite.trace import pattern_of
 from runtime.repl.command import Command, CommandError, Takes, no_words
@@ -18,6 +18,8 @@ from runtime.repl.runs import TypedRun
 from runtime.repl.session import Session
 from runtime.repl.showing import line, lines
 from runtime.repl.supposing import differences
+
+_MOST_ERRORS = 5
 
 
 def percept(session: Session, text: str) -> Iterator[RenderableType]:
@@ -85,7 +87,12 @@ def reload(session: Session, text: str) -> Iterator[RenderableType]:
         raise CommandError("reload which file? a trace holds its own domain: reload mine.icr")
     domain, source, diagnostics = diagnose_file(file)
     if domain is None:
-        yield lines(render(each, source) for each in diagnostics)
+        errors = [each for each in diagnostics if each.severity is Severity.ERROR]
+        yield lines(render(each, source) for each in errors[:_MOST_ERRORS])
+        if len(errors) > _MOST_ERRORS:
+            yield line(
+                f"and {len(errors) - _MOST_ERRORS} errors more; `icarus check` tells them all"
+            )
         yield line("the domain that was running goes on", "yellow")
         return
     before = session.instant.memory if session.has_cycle else None

@@ -44,7 +44,8 @@ def forget(session: Session, text: str) -> Iterator[RenderableType]:
     no_words(text, "forget")
     count = len(session.supposed.edits)
     session.supposed = Supposition()
-    yield line(f"{count} suppositions dropped; the record was never touched")
+    what = "1 supposition" if count == 1 else f"{count} suppositions"
+    yield line(f"{what} dropped; the record was never touched")
 
 
 def what_if(session: Session, text: str) -> Iterator[RenderableType]:

@@ -7,7 +7,7 @@ import pytest
 
 from icarus_lite import Action, Agent, Outcome, Percept, TraceError, load_domain
 from icarus_lite.language.reading.reader import parse_domain
-from icarus_lite.trace import TraceWriter, cycle_record, header, inputs_of, read_trace
+from icarus_lite.trace import TraceWriter, cycle_record, header, inputs_of, read_trace, stream_trace
 
 DOMAIN, _ = parse_domain(
     """(domain lamps) (percepts (lamp ^lit))
@@ -108,6 +108,19 @@ def test_a_foreign_file_is_told_apart(tmp_path: Path, first: str, message: str) 
     path.write_text(first)
     with pytest.raises(TraceError, match=message):
         read_trace(path)
+
+
+def test_a_trace_is_read_line_by_line_while_it_is_written(tmp_path: Path) -> None:
+    path = record(tmp_path / "run.jsonl")
+    whole = read_trace(path)
+    assert list(stream_trace(path)) == [whole.header, *whole.cycles]
+    path.write_bytes(path.read_bytes()[:-20])
+    assert list(stream_trace(path)) == [whole.header, whole.cycles[0]]
+    path.write_text('{"cycle": 0}\n')
+    with pytest.raises(TraceError, match="no header"):
+        list(stream_trace(path))
+    with pytest.raises(TraceError, match="cannot be read"):
+        list(stream_trace(tmp_path / "nowhere.jsonl"))
 
 
 def test_a_recorded_trace_replays_to_the_same_bytes(tmp_path: Path) -> None:
