@@ -53,8 +53,9 @@ class Terminal:
             self._stream.feed(self._child.read_nonblocking(4096, timeout=_DEADLINE_S))
 
     def shows(self, text: str) -> bool:
-        """Tell whether a text stands on the screen."""
-        return any(text in line for line in self._screen.display)
+        """Tell whether a text stands on the screen, be it broken at the edge."""
+        lines = self._screen.display
+        return text in "".join(f"{each.rstrip()}\n" if each[-1] == " " else each for each in lines)
 
     def types(self, text: str) -> None:
         """Type keys as they are."""
