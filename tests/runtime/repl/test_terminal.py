@@ -45,17 +45,25 @@ class Terminal:
     def sees(self, text: str) -> None:
         """Wait until a text stands on the screen."""
         while not self.shows(text):
-            self._stream.feed(self._child.read_nonblocking(4096, timeout=_DEADLINE_S))
+            self._feed()
 
     def asks(self) -> None:
         """Wait until the cursor stands behind a prompt, with nothing typed yet."""
         while not _PROMPT.fullmatch(self._screen.display[self._screen.cursor.y].rstrip()):
+            self._feed()
+
+    def _feed(self) -> None:
+        """Take in what comes next, or fail with what stands on the screen."""
+        try:
             self._stream.feed(self._child.read_nonblocking(4096, timeout=_DEADLINE_S))
+        except pexpect.TIMEOUT:
+            shown = "\n".join(line.rstrip() for line in self._screen.display if line.strip())
+            pytest.fail(f"nothing more came; on the screen stands\n{shown}")
 
     def shows(self, text: str) -> bool:
         """Tell whether a text stands on the screen, be it broken at the edge."""
-        lines = self._screen.display
-        return text in "".join(f"{each.rstrip()}\n" if each[-1] == " " else each for each in lines)
+        shown, wanted = (re.sub(" +", " ", each) for each in ("".join(self._screen.display), text))
+        return wanted in shown
 
     def types(self, text: str) -> None:
         """Type keys as they are."""
