@@ -272,8 +272,9 @@ class PairGroup:
             for place, (columns, name) in enumerate(self._given)
             if columns is self._columns and name in attributes
         ]
-        for side in self._derived:
-            side.ready_lists()
+        for relation in self._relations:
+            for side in relation.sides:  # those of partners too: they are read as well
+                side.ready_lists()
         self._set_reach()
         self._is_behind = True
         self._is_limiting = not self._limits.isdisjoint(attributes)

@@ -88,3 +88,15 @@ def test_a_rule_that_is_symmetric_across_two_attributes() -> None:
             for b, (wb, hb) in sizes.items()
             if a != b and (ha - wb) ** 2 + (wa - hb) ** 2 <= 441
         }
+
+
+def test_derived_columns_of_many_partners_are_read_up_to_date() -> None:
+    domain, _ = parse_domain("""(percepts (obj ^h) (spot ^h))
+(concepts ((on ?a ?b) :elements ((obj ?a ^h ?ah) (spot ?b ^h ?bh))
+           :tests ((< (abs (- ?ah ?bh)) 14) (< (+ ?ah 14) ?bh))))""")
+    assert domain is not None
+    network = compile_domain(domain, {}).network(None)
+    objects = [Percept("obj", f"o{n}", {"h": 7 * n}) for n in range(30)]
+    for height in (14, 175, 100):
+        spot = Percept("spot", "o19", {"h": height})
+        assert network.update_snapshot([*objects, spot], {}).added == ()
