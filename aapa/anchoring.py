@@ -16,6 +16,7 @@ from aapa.hierarchy import parents_of
 from aapa.hypotheses import Move, explain, move_between
 from aapa.names import NameRegister
 from aapa.parameters import AnchoringParameters
+from aapa.reuniting import reunited
 from aapa.sightings import Sightings
 from aapa.singles import Aligned, align_singles
 from aapa.validation import check_camera, checked_detections
@@ -168,6 +169,7 @@ def _explained(
         register: The names given so far.
         frame: The circumstances.
     """
+    seen, lost = reunited(seen, lost, frame.parameters)
     if not lost:
         return AnchoringState(
             tuple(seen), tuple(sorted(gone, key=_by_name)), register, frame.number

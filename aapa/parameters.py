@@ -54,6 +54,8 @@ class AnchoringParameters:
             reaches out of the image, px, at least 0. Default 2.
         unique_types: Types of which one object is expected: the first is named by the bare
             type ("case"), a second one "case-2". All others are "cone-1", "cone-2", …
+        reunite_after: After how many sightings in a row a second anchor of a unique type, whose
+            first is not seen, is taken for the first; at least 1. None, the default, never.
         use_attachments: False leaves the attachments out of account, which is plain perceptual
             anchoring, the paper's PA. Default True.
         image_size: Width and height of the image, px, for a caller that has no camera to pass
@@ -81,6 +83,7 @@ class AnchoringParameters:
     min_report_confidence: float = 0.1
     margin_px: float = 2.0
     unique_types: frozenset[str] = frozenset()
+    reunite_after: int | None = None
     use_attachments: bool = True
     image_size: tuple[int, int] | None = None
 
@@ -178,6 +181,13 @@ class AnchoringParameters:
         if not _is_set_of_names(self.unique_types):
             raise AnchoringError(
                 f"unique_types is {self.unique_types!r}; expected a set of type names"
+            )
+        after = self.reunite_after
+        if after is not None and (
+            not isinstance(after, int) or isinstance(after, bool) or after < 1
+        ):
+            raise AnchoringError(
+                f"reunite_after is {after!r}; it has to be a whole number of at least 1, or null"
             )
         if self.image_size is not None and not _is_image_size(self.image_size):
             raise AnchoringError(
