@@ -8,7 +8,7 @@ BIN := $(VENV)/bin
 PACKAGES := icarus_lite aapa runtime
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt
 
-.PHONY: demo demo-without test check lint types imports format picture bench-task bench-language fuzz mistakes parentheses reference vscode colours fuzz-engine bench-engine bench-engine-rules bench-surprises bench-generator bench-tracking bench-aapa bench-planning clean help
+.PHONY: demo demo-without test check lint types imports format picture bench-language fuzz mistakes parentheses reference vscode colours fuzz-engine bench-engine bench-engine-rules bench-surprises experiment-gearbox bench-generator bench-tracking bench-aapa bench-lacater train-refined bench-planning clean help
 
 help: ## list the targets
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/'
@@ -23,6 +23,10 @@ $(VENV)/.installed: pyproject.toml constraints.txt | $(BIN)/python
 
 $(VENV)/.installed-dev: pyproject.toml constraints.txt | $(BIN)/python
 	$(INSTALL) -e '.[cell,dev]'
+	@touch $@ $(VENV)/.installed
+
+$(VENV)/.installed-neural: pyproject.toml constraints.txt | $(BIN)/python
+	$(INSTALL) -e '.[cell,neural]'
 	@touch $@ $(VENV)/.installed
 
 demo: $(VENV)/.installed ## run task 1.1, "Attach hub cover to case", in the simulated cell
@@ -67,8 +71,8 @@ parentheses: $(VENV)/.installed ## forget and double each parenthesis of the dom
 picture: $(VENV)/.installed ## draw the picture of the README (needs EGL or OSMesa)
 	$(BIN)/python examples/02_picture_of_the_cell.py docs/images/cell.png
 
-bench-task: $(VENV)/.installed ## task 1.1 on twenty seeds, with and without attachments
-	$(BIN)/python benchmarks/attach_hub_cover.py --seeds 20 --out docs/results/task-1.1.md
+experiment-gearbox: $(VENV)/.installed ## the paper's six tasks through every fault (hours; goes on where it was interrupted)
+	$(BIN)/python benchmarks/experiment_gearbox.py --whole --out docs/results/gearbox.md --images docs/images
 
 bench-language: $(VENV)/.installed ## how long reading and checking a domain takes
 	$(BIN)/python benchmarks/language_speed.py --out docs/results/language.md
@@ -111,6 +115,12 @@ bench-tracking: $(VENV)/.installed .venv-peers/.installed ## AAPA beside norfair
 
 bench-aapa: $(VENV)/.installed ## AAPA and aapa-plus beside the paper's table, and each idea left out (half an hour)
 	$(BIN)/python benchmarks/aapa_table.py --out docs/results/aapa.md
+
+bench-lacater: $(VENV)/.installed-neural ## every row of the paper's table and ours beside, on 1,371 videos (a quarter of an hour; rows that are there are kept)
+	$(BIN)/python benchmarks/lacater_table.py --out docs/results/lacater.md
+
+train-refined: $(VENV)/.installed-neural ## train the correction of aapa-refined (half an hour)
+	$(BIN)/python benchmarks/train_refined.py
 
 bench-planning: $(VENV)/.installed ## sixty planning problems beside pyperplan (a quarter of an hour; fetches them, or INSTANCES=checkout)
 	$(BIN)/python benchmarks/planning.py $(if $(INSTANCES),--instances $(INSTANCES)) --improve 8 --rows build/planning.jsonl --out docs/results/planning.md

@@ -42,6 +42,12 @@ class AnchoringState:
     register: NameRegister = field(default_factory=NameRegister)
     frame: int = 0
 
+    @classmethod
+    def of(cls, anchors: Iterable[Anchor], frame: int) -> AnchoringState:
+        """Give a state to go on from, of anchors that were written down and a count of frames."""
+        kept = tuple(sorted(anchors, key=_by_name))
+        return cls(kept, (), NameRegister.of((each.name, each.type) for each in kept), frame)
+
 
 class Anchoring:
     """Objects that keep their names from frame to frame, seen or not.

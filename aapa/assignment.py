@@ -42,6 +42,11 @@ class Side:
         return Side(self.kinds[which], self.centres[which], self.features[which])
 
 
+def prepare() -> None:
+    """Load the solver now, so that no frame has to wait a third of a second for it."""
+    from scipy.optimize import linear_sum_assignment  # noqa: F401, PLC0415 - as below
+
+
 def cheapest(anchors: Side, detections: Side, tau: float, cost: Cost) -> Pairs:
     """Give the pairs of the capped optimum, of all types at once.
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
 from aapa.errors import AnchoringError
@@ -24,6 +24,31 @@ class NameRegister:
     counts: Mapping[str, int] = field(default_factory=dict)
     bare: frozenset[str] = frozenset()
     bodies: frozenset[str] = frozenset()
+
+    @classmethod
+    def of(cls, named: Iterable[tuple[str, str]]) -> NameRegister:
+        """Give the register of names that stand already; names given up before are not known.
+
+        Args:
+            named: Name and type of each anchor.
+
+        Example:
+            >>> NameRegister.of([("case", "case"), ("cone-3", "cone"), ("hand1", "hand")]).counts
+            {'case': 1, 'cone': 3}
+        """
+        counts: dict[str, int] = {}
+        bare: set[str] = set()
+        bodies: set[str] = set()
+        for name, type_ in named:
+            stem, _, number = name.rpartition("-")
+            if name == type_:
+                bare.add(name)
+                counts[type_] = max(1, counts.get(type_, 0))
+            elif stem == type_ and number.isdecimal():
+                counts[type_] = max(int(number), counts.get(type_, 0))
+            else:
+                bodies.add(name)
+        return cls(counts, frozenset(bare), frozenset(bodies))
 
     def __contains__(self, name: str) -> bool:
         return name in self.bodies or self._is_object(name)

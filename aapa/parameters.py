@@ -18,6 +18,7 @@ _LARGEST_BASE_TAU = 25.0
 _FRACTIONS = (
     "confidence_gain",
     "confidence_loss",
+    "sure_score",
     "initial_confidence",
     "min_anchor_confidence",
     "min_report_confidence",
@@ -43,6 +44,10 @@ class AnchoringParameters:
         position_gain: Share of the way an anchor goes to its new detection, in (0, 1]. 1, the
             default, takes the detection as it is; less makes a running mean for a noisy
             detector, for anchors that nothing carries.
+        sure_score: Of detectors whose score falls with the visible share: a sighting that scores
+            less is of something half hidden, whose middle is not where it seems. It does not
+            move an anchor of full confidence that nothing carries, in [0, 1]. Default 0: every
+            sighting does.
         confidence_gain: Added with each sighting, in (0, 1]. Default 0.1.
         confidence_loss: Taken with each unexplained miss, in (0, 1]. Default 0.1.
         initial_confidence: At the first sighting, in [0, 1]. Default 0.1.
@@ -76,6 +81,7 @@ class AnchoringParameters:
     space: Space = "image"
     cost: str | Cost = "centre"
     position_gain: float = 1.0
+    sure_score: float = 0.0
     confidence_gain: float = 0.1
     confidence_loss: float = 0.1
     initial_confidence: float = 0.1
@@ -182,12 +188,10 @@ class AnchoringParameters:
             raise AnchoringError(
                 f"unique_types is {self.unique_types!r}; expected a set of type names"
             )
-        after = self.reunite_after
-        if after is not None and (
-            not isinstance(after, int) or isinstance(after, bool) or after < 1
-        ):
+        if self.reunite_after is not None and not _is_count(self.reunite_after):
             raise AnchoringError(
-                f"reunite_after is {after!r}; it has to be a whole number of at least 1, or null"
+                f"reunite_after is {self.reunite_after!r}; "
+                "it has to be a whole number of at least 1, or null"
             )
         if self.image_size is not None and not _is_image_size(self.image_size):
             raise AnchoringError(
@@ -197,6 +201,10 @@ class AnchoringParameters:
 
 def _is_set_of_names(value: object) -> bool:
     return isinstance(value, frozenset) and all(isinstance(name, str) and name for name in value)
+
+
+def _is_count(value: object) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool) and value >= 1
 
 
 def _is_image_size(value: object) -> bool:

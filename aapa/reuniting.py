@@ -28,30 +28,29 @@ def reunited(
             of such a type is the first one; None leaves both as they are.
     """
     after = parameters.reunite_after
-    if after is None or not lost or not parameters.unique_types:
+    if after is None or not parameters.unique_types:
         return seen, lost
-    missed = {
-        anchor.type: anchor
-        for anchor in lost
-        if anchor.name == anchor.type and anchor.type in parameters.unique_types
-    }
-    if not missed:
-        return seen, lost
+    here = {anchor.type for anchor in seen if anchor.name == anchor.type}
     found: dict[str, Anchor] = {}
     for anchor in seen:
-        if anchor.type in missed and anchor.streak >= after:
-            longest = found.get(anchor.type)
+        kind = anchor.type
+        if kind in parameters.unique_types and kind not in here and anchor.streak >= after:
+            longest = found.get(kind)
             if longest is None or anchor.streak > longest.streak:
-                found[anchor.type] = anchor
+                found[kind] = anchor
     if not found:
         return seen, lost
-    renamed = {other.name: _taken_over(missed[kind], other) for kind, other in found.items()}
-    here = sorted((renamed.get(each.name, each) for each in seen), key=lambda each: each.name)
-    return here, [anchor for anchor in lost if anchor.name not in found]
+    missed = {anchor.name: anchor for anchor in lost if anchor.name in found}
+    renamed = {other.name: _taken_over(missed.get(kind), other) for kind, other in found.items()}
+    united = sorted((renamed.get(each.name, each) for each in seen), key=lambda each: each.name)
+    return united, [anchor for anchor in lost if anchor.name not in found]
 
 
-def _taken_over(old: Anchor, other: Anchor) -> Anchor:
-    """Give the old anchor where the other one is."""
+def _taken_over(old: Anchor | None, other: Anchor) -> Anchor:
+    """Give the old anchor where the other one is; None if it was given up before."""
+    if old is None:
+        reason = f"It is seen {other.streak} times in a row, and there is only one {other.type}."
+        return replace(other, name=other.type, reason=reason)
     far = ""
     if old.position is not None and other.position is not None:
         far = f" {squared_distance(old.position, other.position) ** 0.5:.2f} m"

@@ -65,8 +65,10 @@ class Sightings:
             # Rounded, so that ten gains of 0.1 are 1 and nothing depends on float dust.
             confidence = min(1.0, round(confidence + parameters.confidence_gain, 9))
         box, position = detection.box, detection.position
-        if parameters.position_gain < 1 and not self._has_been_moved(anchor, squared):
-            gain = parameters.position_gain
+        gain = parameters.position_gain
+        if detection.score < parameters.sure_score and anchor.confidence >= 1.0:
+            gain = 0.0
+        if gain < 1 and not self._has_been_moved(anchor, squared):
             if parameters.space == "image":
                 box = _mixed(anchor.box, box, gain)
             position = _between(anchor.position, position, gain)
@@ -91,7 +93,7 @@ class Sightings:
     def of_pairs(self, pairs: Iterable[tuple[Anchor, Detection, float]]) -> list[Anchor]:
         """Give what `of_old` gives for each anchor, its detection and their squared distance."""
         parameters = self.parameters
-        if parameters.position_gain < 1 or parameters.space == "base":
+        if parameters.position_gain < 1 or parameters.sure_score or parameters.space == "base":
             return [self.of_old(*pair) for pair in pairs]
         # The same, written out for what most of a frame is: it is half of all the work.
         number, gain, visible = self.number, parameters.confidence_gain, AnchorStatus.VISIBLE

@@ -129,30 +129,34 @@ def measure(instance: Instance, seconds: int, improve: int, checkout: Path | Non
     first = ours(instance, seconds, SEEDS[0])
     peer = None if checkout is None else peers(instance, seconds, checkout)
     again = ours(instance, seconds, SEEDS[1])
-    improved = ours(instance, improve, SEEDS[0], "--improve") if improve else None
+    improved = ours(instance, improve, SEEDS[0], "improve") if improve else None
     same = first.plan == again.plan
     return Row(instance.name, first, improved, peer, same, os.getloadavg()[0])
 
 
 def ours(instance: Instance, seconds: int, seed: str, *options: str) -> Run:
     """Run our planner; it gets a little less, for what it takes to end."""
-    command = [str(HERE / "planners/ours.py"), "--seconds", f"{0.8 * seconds}", *options]
-    return measured(command, instance, seconds, {"PYTHONHASHSEED": seed})
+    options = (f"{0.8 * seconds}", *options)
+    return measured("planners/ours.py", options, instance, seconds, {"PYTHONHASHSEED": seed})
 
 
 def peers(instance: Instance, seconds: int, checkout: Path) -> Run:
     """Run pyperplan, of the checkout, by the same interpreter."""
     path = {"PYTHONPATH": str(checkout), "PYTHONHASHSEED": "0"}
-    return measured([str(HERE / "planners/peer.py")], instance, seconds, path)
+    return measured("planners/peer.py", (), instance, seconds, path)
 
 
 def measured(
-    command: list[str], instance: Instance, seconds: int, environment: dict[str, str]
+    script: str,
+    options: tuple[str, ...],
+    instance: Instance,
+    seconds: int,
+    environment: dict[str, str],
 ) -> Run:
     """Run a planner on a problem, up to a limit of processor time, and check its plan."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     done = subprocess.run(  # noqa: S603 - our own scripts
-        [sys.executable, *command, str(instance.domain), str(instance.problem)],
+        [sys.executable, str(HERE / script), str(instance.domain), str(instance.problem), *options],
         env={**compiled(), **environment},
         preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (seconds + 1, seconds + 2)),
         capture_output=True,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from icarus_lite.errors import FrameError
 from icarus_lite.execution import (
@@ -39,16 +39,18 @@ from icarus_lite.inference import (
     Explanation,
     Functions,
     InferenceEngine,
+    Memory,
     WhyNot,
+    carried_over,
     explain,
     given_memory,
     why_not,
 )
 from icarus_lite.language.diagnostics import DomainError
 from icarus_lite.language.fragments import parse_atom, parse_conditions
-from icarus_lite.language.reading.explanations import closest, listing
 from icarus_lite.language.syntax import Atom, Condition, Constant, Domain
 from icarus_lite.language.teams import domain_of
+from icarus_lite.language.wording import closest, listing
 from icarus_lite.symbols import Belief, Outcome, Percept, is_number
 
 __all__ = [
@@ -142,8 +144,9 @@ class Agent:
         """Go on by the rules of an edited domain, from the next cycle on.
 
         What actions have asserted stays asserted, goals stay goals, and what was believed when is
-        still known. Plans and what was learnt from failures belong to the old rules and are
-        dropped; an action under way is no longer watched, but its outcome still counts.
+        still known; contradictions that the new rules still have go on counting. Plans and what was
+        learnt from failures belong to the old rules and are dropped; an action under way is no
+        longer watched, but its outcome still counts.
 
         Args:
             domain: A checked domain.
@@ -153,7 +156,22 @@ class Agent:
                 nothing has changed.
         """
         left = self.intentions[self._executor.carried_out :]
+        state, old = self._memory.state, self.domain.contradictions
         self._live_by(domain, tuple(_as_call(each, domain) for each in left))
+        doubts = carried_over(state.doubts, old, domain.contradictions)
+        self._memory = replace(self._memory, state=replace(state, doubts=doubts))
+
+    def take_up(self, memory: Memory, chronicle: Chronicle) -> None:
+        """Go on from what was believed before: see `icarus_lite.trace.resumed_agent`.
+
+        What was planned, and what was learnt from failures, is not taken up.
+
+        Args:
+            memory: Of the last cycle, made by the engine of the same domain.
+            chronicle: What was believed when, up to that cycle.
+        """
+        self._memory = memory
+        self._chronicle = chronicle
 
     @property
     def state(self) -> BeliefState:
@@ -164,6 +182,11 @@ class Agent:
     def goals(self) -> tuple[Condition, ...]:
         """The literals of all goals, in the order in which they came to be goals."""
         return tuple(condition for entry in self._agenda for condition in entry.goal.conditions)
+
+    @property
+    def goal_names(self) -> tuple[str, ...]:
+        """The names of all goals, in the same order."""
+        return tuple(entry.name for entry in self._agenda)
 
     def add_goal(
         self,
@@ -245,7 +268,7 @@ class Agent:
         state = self._memory.state
         added, removed = state.since(before)
         present = [percept.name for percept in state.percepts]
-        self._chronicle.record(state.cycle, added, removed, outcomes, present)
+        self._chronicle.record(state.cycle, added, removed, outcomes, present, state.withdrawn)
         moment = Moment(self._engine, self._memory, time_s)
         choice, agenda = self._management.decide(moment, outcomes)
         told, self._told = tuple(self._told), []

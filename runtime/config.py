@@ -8,47 +8,24 @@ ISO 10218-1 sets for reduced speed, and 1 rad/s at the joints.
 
 from __future__ import annotations
 
-import difflib
 import math
-from collections.abc import Mapping
-from dataclasses import MISSING, dataclass, field, fields, is_dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import (
-    Annotated,
-    Any,
-    Final,
-    NamedTuple,
-    TypeAlias,
-    cast,
-    get_args,
-    get_origin,
-    get_type_hints,
-)
+from typing import Annotated, Final, TypeAlias
 
-import yaml
-
+from runtime.checked_yaml import Limit, Masses, check, load
 from runtime.errors import ConfigError
-from runtime.kinematics import MODELS, ArmModel, Joints, Pose
+from runtime.kinematics import MODELS, ArmModel, Joints, Pose, link_frames, pose_to_matrix
 
 Range: TypeAlias = tuple[float, float]
 """Lowest and highest value."""
-
-Masses: TypeAlias = tuple[tuple[str, float], ...]
-"""Part types with their mass, kg. Pairs, so that a configuration can be hashed and pickled."""
 
 DATA: Final = Path(__file__).parent / "data"
 MAX_TOOL_SPEED: Final = 0.25
 MAX_JOINT_SPEED: Final = 1.0
 
 _TURN: Final = 2 * math.pi
-
-
-class Limit(NamedTuple):
-    """The range and unit of a number, or of each number of a tuple."""
-
-    low: float
-    high: float
-    unit: str
+_DOWN: Final = math.cos(math.radians(5))  # the tool points down if it is no more than this off
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -70,7 +47,7 @@ class Speeds:
     stop_deceleration: Annotated[float, Limit(1.0, 10.0, "rad/s^2")] = 4.0
 
     def __post_init__(self) -> None:
-        _validate(self, "speeds")
+        check(self, "speeds")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -101,7 +78,7 @@ class Workspace:
     put_down: Annotated[tuple[float, float, float, float], Limit(-1.2, 1.2, "m")]
 
     def __post_init__(self) -> None:
-        _validate(self, "workspace")
+        check(self, "workspace")
         x0, x1, y0, y1 = self.put_down
         for key, (low, high) in (
             ("x", self.x),
@@ -134,7 +111,7 @@ class Payload:
     parts_kg: Annotated[Masses, Limit(0.0, 16.0, "kg")] = ()
 
     def __post_init__(self) -> None:
-        _validate(self, "payload")
+        check(self, "payload")
 
     def part(self, type_: str) -> float:
         """Give the mass of a part of a type, kg."""
@@ -164,7 +141,7 @@ class Gripper:
     length_m: Annotated[float, Limit(0.01, 0.4, "m")] = 0.15
 
     def __post_init__(self) -> None:
-        _validate(self, "gripper")
+        check(self, "gripper")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -184,7 +161,7 @@ class Heights:
     retreat_m: Annotated[float, Limit(0.01, 0.5, "m")] = 0.1
 
     def __post_init__(self) -> None:
-        _validate(self, "heights")
+        check(self, "heights")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -214,7 +191,56 @@ class Watch:
     position_tolerance_m: Annotated[float, Limit(0.0001, 0.01, "m")] = 0.001
 
     def __post_init__(self) -> None:
-        _validate(self, "watch")
+        check(self, "watch")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Force:
+    """What the arm may do by force: pressing parts home, and driving screws.
+
+    Args:
+        descent_n: Pressed downward while it comes down and feels for an opening, N.
+        descent_speed: Of the tool on its way down, m/s.
+        guard_m: How far above its target the way down by force begins, m.
+        search_radius_m: How far around where it should be an opening is looked for, m.
+        search_n: Pushed sideways at most while looking for it, N.
+        search_speed: Of the tool while looking for it, m/s.
+        seat_tolerance_m: How far above the expected height a part counts as seated, m.
+        torque_nm: At which a screw is tight, Nm.
+        turning_speed: Of the tool while it turns a screw, rad/s.
+        regrip_m: How far the hand goes up to turn back and take hold of a screw again, m.
+        press_time_s: Longest time to bring a part home...
+        turn_time_s: ...and for one stroke of the wrist, s of the controller's clock.
+        most_n: Whatever it does by force, and on its way down, ends above this, N. The arm's own
+            protective stop comes at about 150 N.
+    """
+
+    descent_n: Annotated[float, Limit(2.0, 40.0, "N")] = 8.0
+    descent_speed: Annotated[float, Limit(0.002, 0.05, "m/s")] = 0.02
+    guard_m: Annotated[float, Limit(0.005, 0.1, "m")] = 0.03
+    search_radius_m: Annotated[float, Limit(0.001, 0.015, "m")] = 0.006
+    search_n: Annotated[float, Limit(1.0, 30.0, "N")] = 5.0
+    search_speed: Annotated[float, Limit(0.001, 0.02, "m/s")] = 0.005
+    seat_tolerance_m: Annotated[float, Limit(0.0003, 0.005, "m")] = 0.001
+    torque_nm: Annotated[float, Limit(0.2, 8.0, "Nm")] = 1.5
+    turning_speed: Annotated[float, Limit(0.05, MAX_JOINT_SPEED, "rad/s")] = 0.9
+    regrip_m: Annotated[float, Limit(0.01, 0.2, "m")] = 0.03
+    press_time_s: Annotated[float, Limit(5.0, 120.0, "s")] = 45.0
+    turn_time_s: Annotated[float, Limit(5.0, 120.0, "s")] = 60.0
+    most_n: Annotated[float, Limit(10.0, 120.0, "N")] = 60.0
+
+    def __post_init__(self) -> None:
+        check(self, "force")
+        if self.descent_n > self.most_n / 2:
+            raise ConfigError(
+                f"force.descent_n: {self.descent_n:g}; expected at most half of force.most_n "
+                f"({self.most_n:g} N), which ends whatever is done by force"
+            )
+        if self.search_n > self.descent_n:
+            raise ConfigError(
+                f"force.search_n: {self.search_n:g}; expected at most force.descent_n "
+                f"({self.descent_n:g} N), or a part climbs out of every chamfer that leads it in"
+            )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -226,18 +252,19 @@ class RobotConfig:
         look_joints: From here the camera sees the whole parts area; the tool points down, rad.
         tcp: From the flange to the tool centre point between the fingertips, m and rad.
         look_cycles: Camera frames taken at the look pose before a motion relies on them.
-        speeds, workspace, payload, gripper, heights, watch: See there.
+        speeds, workspace, payload, gripper, heights, force, watch: See there.
     """
 
     model: str
     look_joints: Annotated[Joints, Limit(-_TURN, _TURN, "rad")]
-    tcp: Annotated[Pose, Limit(-math.pi, math.pi, "m and rad")]
+    tcp: Annotated[Pose, Limit(-0.5, 0.5, "m"), Limit(-math.pi, math.pi, "rad")]
     look_cycles: Annotated[int, Limit(1, 100, "cycles")] = 3
     speeds: Speeds
     workspace: Workspace
     payload: Payload
     gripper: Gripper
     heights: Heights
+    force: Force = field(default_factory=Force)
     watch: Watch = field(default_factory=Watch)
 
     def __post_init__(self) -> None:
@@ -246,28 +273,11 @@ class RobotConfig:
                 f"model: {self.model!r} is not an arm that is known; "
                 f"expected one of {', '.join(sorted(MODELS))}"
             )
-        _validate(self, "")
-        if math.hypot(*self.tcp[:3]) > 0.5:
-            raise ConfigError(
-                f"tcp: {math.hypot(*self.tcp[:3]):g} m from the flange to the tool centre point; "
-                "expected at most 0.5 m"
-            )
-        heaviest = self.payload.gripper_kg + max(
-            (self.payload.part_kg, *(kg for _, kg in self.payload.parts_kg))
-        )
-        if heaviest > self.arm.payload_kg:
-            raise ConfigError(
-                f"payload: gripper and heaviest part weigh {heaviest:g} kg; "
-                f"expected at most the {self.arm.payload_kg:g} kg a {self.model} may carry"
-            )
-        # The controller hears nothing while it stops the arm: the watchdog must outlast that.
-        stopping = self.speeds.joint / self.speeds.stop_deceleration
-        if stopping > 0.8 / self.watch.watchdog_hz:
-            least = self.speeds.joint * self.watch.watchdog_hz / 0.8
-            raise ConfigError(
-                f"speeds.stop_deceleration: {self.speeds.stop_deceleration:g}; expected at least "
-                f"{least:g} rad/s^2, or the watchdog ({self.watch.watchdog_hz:g} Hz) acts first"
-            )
+        check(self, "")
+        _check_tool(self)
+        _check_load(self)
+        _check_watchdog(self)
+        _check_look_pose(self)
 
     @property
     def arm(self) -> ArmModel:
@@ -289,23 +299,16 @@ def load_robot(name_or_path: str | Path) -> RobotConfig:
 
     Raises:
         ConfigError: There is no such file, it is not YAML, or a key or value in it is wrong; the
-            text names file, key, value and what is allowed.
+            text names file, line, key, value and what is allowed.
     """
     shipped = DATA / f"{name_or_path}.yaml"
-    path = shipped if shipped.is_file() else Path(name_or_path)
     try:
-        content = yaml.safe_load(path.read_text(encoding="utf-8"))
+        return load(RobotConfig, shipped if shipped.is_file() else Path(name_or_path))
     except FileNotFoundError:
         raise ConfigError(
             f"{name_or_path}: no robot configuration of this name and no such file; "
             f"expected a YAML file or one of {', '.join(_shipped())}"
         ) from None
-    except (OSError, ValueError, yaml.YAMLError) as error:
-        raise ConfigError(f"{path}: cannot be read as YAML: {error}") from None
-    try:
-        return cast("RobotConfig", _read(RobotConfig, content, ""))
-    except ConfigError as error:
-        raise ConfigError(f"{path}: {error}") from None
 
 
 def _shipped() -> list[str]:
@@ -314,65 +317,61 @@ def _shipped() -> list[str]:
     )
 
 
-def _read(kind: type[Any], content: object, place: str) -> object:
-    """Build a configuration class from parsed YAML, refusing keys it does not have."""
-    if not isinstance(content, Mapping):
-        raise ConfigError(f"{place or 'the file'}: expected keys with values, got {content!r}")
-    known = {entry.name: entry for entry in fields(kind)}
-    for key in content:
-        if key not in known:
-            close = difflib.get_close_matches(str(key), known, n=1)
-            hint = f"did you mean {close[0]!r}?" if close else f"expected {', '.join(known)}"
-            raise ConfigError(f"{_join(place, str(key))}: unknown key; {hint}")
-    hints = get_type_hints(kind)
-    values: dict[str, object] = {}
-    for name, entry in known.items():
-        if name not in content:
-            if entry.default is MISSING and entry.default_factory is MISSING:
-                raise ConfigError(f"{_join(place, name)}: missing")
-            continue
-        value, inner = content[name], hints[name]
-        if is_dataclass(inner):
-            values[name] = _read(cast("type[Any]", inner), value, _join(place, name))
-        elif inner == Masses and isinstance(value, dict):
-            values[name] = tuple(sorted((str(key), item) for key, item in value.items()))
-        else:
-            values[name] = tuple(value) if isinstance(value, list) else value
-    return kind(**values)
-
-
-def _validate(config: Any, place: str) -> None:
-    """Check every number of a configuration class against its declared range."""
-    for key, annotated in get_type_hints(type(config), include_extras=True).items():
-        if get_origin(annotated) is not Annotated:
-            continue
-        hint, limit = get_args(annotated)
-        name, value = _join(place, key), getattr(config, key)
-        if hint == Masses:
-            pairs = isinstance(value, tuple) and all(isinstance(pair, tuple) for pair in value)
-            if not pairs or any(len(pair) != 2 for pair in value):
-                raise ConfigError(f"{name}: {value!r}; expected part types with {limit.unit}")
-            for type_, mass in value:
-                _check_number(_join(name, type_), mass, limit)
-        elif get_origin(hint) is tuple:
-            size = len(get_args(hint))
-            if not isinstance(value, tuple) or len(value) != size:
-                raise ConfigError(f"{name}: {value!r}; expected {size} numbers, {limit.unit}")
-            for item in value:
-                _check_number(name, item, limit)
-        else:
-            _check_number(name, value, limit, whole=hint is int)
-
-
-def _check_number(name: str, value: object, limit: Limit, *, whole: bool = False) -> None:
-    number = isinstance(value, int if whole else int | float) and not isinstance(value, bool)
-    if not number or not limit.low <= cast("float", value) <= limit.high:  # also refuses NaN
-        kind = "a whole number" if whole else "a number"
+def _check_tool(config: RobotConfig) -> None:
+    length = math.hypot(*config.tcp[:3])
+    if length > 0.5:
         raise ConfigError(
-            f"{name}: {value!r}; expected {kind} from {limit.low:.6g} to {limit.high:.6g} "
-            f"{limit.unit}".rstrip()
+            f"tcp: {length:g} m from the flange to the tool centre point; expected at most 0.5 m"
         )
 
 
-def _join(place: str, name: str) -> str:
-    return f"{place}.{name}" if place else name
+def _check_load(config: RobotConfig) -> None:
+    payload = config.payload
+    heaviest = payload.gripper_kg + max((payload.part_kg, *(kg for _, kg in payload.parts_kg)))
+    if heaviest > config.arm.payload_kg:
+        raise ConfigError(
+            f"payload: gripper and heaviest part weigh {heaviest:g} kg; "
+            f"expected at most the {config.arm.payload_kg:g} kg a {config.model} may carry"
+        )
+
+
+def _check_watchdog(config: RobotConfig) -> None:
+    """The controller hears nothing while it stops the arm: the watchdog must outlast that."""
+    speeds, watchdog_hz = config.speeds, config.watch.watchdog_hz
+    if speeds.joint / speeds.stop_deceleration > 0.8 / watchdog_hz:
+        raise ConfigError(
+            f"speeds.stop_deceleration: {speeds.stop_deceleration:g}; expected at least "
+            f"{speeds.joint * watchdog_hz / 0.8:g} rad/s^2, or the watchdog ({watchdog_hz:g} Hz) "
+            "acts first"
+        )
+
+
+def _check_look_pose(config: RobotConfig) -> None:
+    """Refuse a look pose in which the arm could not stand: it is gone to all the time."""
+    box, joints = config.workspace, config.look_joints
+    if max(map(abs, joints)) > box.joint_limit_rad:
+        raise ConfigError(
+            f"look_joints: {max(joints, key=abs):g}; expected at most workspace.joint_limit_rad, "
+            f"{box.joint_limit_rad:g} rad either way"
+        )
+    frames = link_frames(config.arm, joints)
+    tcp = frames[6] @ pose_to_matrix(config.tcp)
+    places = zip("xyz", tcp[:3, 3].tolist(), (box.x, box.y, box.z), strict=True)
+    for axis, value, (low, high) in places:
+        if not low <= value <= high:
+            raise ConfigError(
+                f"look_joints: they bring the tool of a {config.model} to {axis} = {value:.3f} m; "
+                f"expected within workspace.{axis}, {low:g} to {high:g} m"
+            )
+    if float(frames[2:, 2, 3].min()) < box.table_z_m + box.link_clearance_m:
+        raise ConfigError(
+            "look_joints: they bring a joint of the arm to "
+            f"{float(frames[2:, 2, 3].min()) - box.table_z_m:.3f} m over the table; expected at "
+            f"least workspace.link_clearance_m, {box.link_clearance_m:g} m"
+        )
+    if float(tcp[2, 2]) > -_DOWN:
+        off = math.degrees(math.acos(max(-1.0, min(1.0, -float(tcp[2, 2])))))
+        raise ConfigError(
+            f"look_joints: the tool of a {config.model} would point {off:.0f} degrees away from "
+            "straight down; expected at most 5 (are they this arm's angles, in rad?)"
+        )

@@ -30,6 +30,8 @@ GEARBOX: Final = Path(__file__).parent / "data" / "gearbox.yaml"
 
 _LONGEST_M: Final = 0.5
 _KEYS: Final = ("colour", "grasp", "grip", "solids", "seats")
+_SEAT_KEYS: Final = ("into", "at", "press_n", "clearance_m", "chamfer_m", "engages_m", "thread")
+_THREAD_KEYS: Final = ("pitch_m", "turns")
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,16 +52,44 @@ class Primitive:
 
 
 @dataclass(frozen=True, slots=True)
+class ScrewThread:
+    """The thread by which a part is screwed into its seat, right-handed.
+
+    Args:
+        pitch_m: How far one turn goes down.
+        turns: From where the thread takes hold to where the part is tight.
+    """
+
+    pitch_m: float
+    turns: float
+
+    @property
+    def depth_m(self) -> float:
+        """How far all its turns go down."""
+        return self.pitch_m * self.turns
+
+
+@dataclass(frozen=True, slots=True)
 class Seat:
     """A place a part fits into.
 
     Args:
         into: Type of the receiving part.
         offset: Centre of the seated part relative to the receiver's centre, m, receiver unturned.
+        press_n: The force that seats it, N.
+        clearance_m: How far its axis may be beside the seat's when it goes in.
+        chamfer_m: How far beyond that the edge, broken at 45 degrees, still leads it in.
+        engages_m: The part stands at least this high above its seat until it is in line with it.
+        thread: How it is screwed in, None if it is only pushed in.
     """
 
     into: str
     offset: Vector
+    press_n: float = 12.0
+    clearance_m: float = 0.0006
+    chamfer_m: float = 0.003
+    engages_m: float = 0.0
+    thread: ScrewThread | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,12 +149,7 @@ class _Drawing:
     def __init__(self, name: str, body: object) -> None:
         self.name = name
         self.fields = _mapping(body, name)
-        for key in self.fields:
-            if key not in _KEYS:
-                raise ConfigError(f"{name}: unknown key {key!r}; {_hint(key, _KEYS)}.")
-        for key in _KEYS[:-1]:
-            if key not in self.fields:
-                raise ConfigError(f"{name}: the key {key!r} is missing.")
+        _check_keys(self.fields, name, _KEYS, needed=_KEYS[:-1])
         colour = _vector(self.fields["colour"], f"{name}.colour", 0.0, 1.0)
         rows = _sequence(self.fields["solids"], f"{name}.solids")
         if not rows:
@@ -171,15 +196,31 @@ class _Drawing:
 
     def _seat(self, row: object, where: str, drawings: Mapping[str, _Drawing]) -> Seat:
         fields = _mapping(row, where)
-        if set(fields) != {"into", "at"}:
-            raise ConfigError(f"{where}: {row!r} has the wrong keys; expected 'into' and 'at'.")
+        _check_keys(fields, where, _SEAT_KEYS, needed=("into", "at"))
         into = fields["into"]
         if not isinstance(into, str) or into not in drawings or into == self.name:
             others = [name for name in drawings if name != self.name]
             raise ConfigError(f"{where}.into: {into!r} is no other part; {_hint(into, others)}.")
         x, y, z = _vector(fields["at"], f"{where}.at", -_LONGEST_M, _LONGEST_M)
         rise = z + (self.height - drawings[into].height) / 2
-        return Seat(into, (x, y, round(rise, 9)))
+        return Seat(
+            into,
+            (x, y, round(rise, 9)),
+            _number(fields.get("press_n", 12.0), f"{where}.press_n", 0.0, 100.0),
+            _number(fields.get("clearance_m", 0.0006), f"{where}.clearance_m", 0.0001, 0.005),
+            _number(fields.get("chamfer_m", 0.003), f"{where}.chamfer_m", 0.0, 0.01),
+            _number(fields.get("engages_m", 0.0), f"{where}.engages_m", 0.0, 0.05),
+            None if fields.get("thread") is None else _thread(fields["thread"], f"{where}.thread"),
+        )
+
+
+def _thread(value: object, where: str) -> ScrewThread:
+    fields = _mapping(value, where)
+    _check_keys(fields, where, _THREAD_KEYS, needed=_THREAD_KEYS)
+    return ScrewThread(
+        _number(fields["pitch_m"], f"{where}.pitch_m", 0.0002, 0.01),
+        _number(fields["turns"], f"{where}.turns", 0.25, 20.0),
+    )
 
 
 def _solid(row: object, where: str, colour: Vector) -> Primitive:
@@ -202,6 +243,17 @@ def _solid(row: object, where: str, colour: Vector) -> Primitive:
     red, green, blue = (min(1.0, shade * value) for value in colour)
     kind: Shape = "box" if shape == "box" else "cylinder"
     return Primitive(kind, (width, depth, height), (x, y, z + height / 2), (red, green, blue))
+
+
+def _check_keys(
+    fields: Mapping[str, object], where: str, known: Sequence[str], needed: Sequence[str]
+) -> None:
+    for key in fields:
+        if key not in known:
+            raise ConfigError(f"{where}: unknown key {key!r}; {_hint(key, known)}.")
+    for key in needed:
+        if key not in fields:
+            raise ConfigError(f"{where}: the key {key!r} is missing.")
 
 
 def _mapping(value: object, where: str) -> dict[str, object]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 from aapa import Anchor, AnchorStatus, Camera, Detection
 from icarus_lite import Percept, Value
@@ -14,6 +14,12 @@ HAND = "hand1"
 """The symbol of the robot's own hand."""
 
 HAND_TYPE = "hand"
+
+PERSON_TYPE = "person"
+"""The class that a detector gives the hand of a person."""
+
+_PERSON_STAYS = 20
+"""For so many frames a hand that is hidden is taken to be where it was."""
 
 _MM = 4
 """Positions are told to a tenth of a millimetre: digits below that are noise."""
@@ -45,19 +51,43 @@ def hand_detection(arm: ArmState, camera: Camera, config: RobotConfig) -> Detect
 
 
 def percepts_of(
-    anchors: Iterable[Anchor], arm: ArmState, config: RobotConfig
+    anchors: Iterable[Anchor], arm: ArmState, config: RobotConfig, *, acting: bool = False
 ) -> tuple[Percept, ...]:
-    """Tell the anchors as percepts of `gearbox.icr`: `hand` and `object`, in m, base frame."""
-    return tuple(
-        _hand(anchor, arm, config) if anchor.type == HAND_TYPE else _object(anchor)
-        for anchor in anchors
-    )
+    """Tell the anchors as percepts of `gearbox.icr`: `hand`, `person`, `object`; m, base frame.
+
+    A person moves unasked: out of view, missed where nothing hides them, or hidden for more than a
+    moment, they are gone.
+
+    Args:
+        anchors: What is anchored.
+        arm: What the arm measures of itself.
+        config: The robot.
+        acting: Whether an action of its own is under way.
+    """
+    return tuple(_percepts(anchors, arm, config, "yes" if acting else "no"))
 
 
-def _hand(anchor: Anchor, arm: ArmState, config: RobotConfig) -> Percept:
+def _percepts(
+    anchors: Iterable[Anchor], arm: ArmState, config: RobotConfig, acting: Value
+) -> Iterator[Percept]:
+    for anchor in anchors:
+        if anchor.type == HAND_TYPE:
+            yield _hand(anchor, arm, config, acting)
+        elif anchor.type != PERSON_TYPE:
+            yield _object(anchor)
+        elif anchor.status is AnchorStatus.VISIBLE or (
+            anchor.status is AnchorStatus.OCCLUDED and anchor.streak > -_PERSON_STAYS
+        ):
+            yield Percept("person", anchor.name, {**_position(anchor), "seen": _seen(anchor)})
+
+
+def _hand(anchor: Anchor, arm: ArmState, config: RobotConfig, acting: Value) -> Percept:
     attributes: dict[str, Value] = _position(anchor)
     attributes["reach"] = config.reach_m
-    attributes["gripping"] = "yes" if arm.gripped else "no"
+    # Fingers that are open only to take hold again have not lost what they held.
+    attributes["gripping"] = "yes" if arm.gripped else "again" if arm.regrips else "no"
+    attributes["fingers"] = "closed" if arm.gripper_closed else "open"
+    attributes["acting"] = acting
     return Percept("hand", anchor.name, attributes)
 
 
@@ -66,9 +96,13 @@ def _object(anchor: Anchor) -> Percept:
     if anchor.size is not None:
         attributes["width"] = round(anchor.size[0], _MM)
         attributes["height"] = round(anchor.size[1], _MM)
-    attributes["seen"] = "yes" if anchor.status is AnchorStatus.VISIBLE else "no"
+    attributes["seen"] = _seen(anchor)
     attributes["status"] = str(anchor.status)
     return Percept("object", anchor.name, attributes)
+
+
+def _seen(anchor: Anchor) -> Value:
+    return "yes" if anchor.status is AnchorStatus.VISIBLE else "no"
 
 
 def _position(anchor: Anchor) -> dict[str, Value]:

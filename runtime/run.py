@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from importlib.resources import files
 from pathlib import Path
@@ -11,15 +11,21 @@ from pathlib import Path
 import yaml
 
 from aapa import Anchoring, AnchoringParameters
+from aapa.assignment import prepare
 from icarus_lite import Agent, DomainError
 from icarus_lite.language import check_commands
 from icarus_lite.language.syntax import Domain, Task
 from icarus_lite.trace import TraceWriter, ensure_writable, header
+from runtime.cell import CellParameters
+from runtime.cell_source import CellColleague, known_actions
 from runtime.config import RobotConfig, load_robot
+from runtime.cycle_report import CycleReport
 from runtime.errors import UsageError
-from runtime.loop import ActionRecord, CycleReport, Loop, LoopLimits
+from runtime.loop import ActionRecord, Loop, LoopLimits, TakenUp
 from runtime.parts import load_parts
-from runtime.workplace import Workplace, open_workplace
+from runtime.people import Operator, People
+from runtime.resuming import CutOff, read_cut_off, read_world, world_keeper, world_path
+from runtime.workplace import Setting, Workplace, open_workplace
 
 DEFAULT_ROBOT = "ur5"
 DEFAULT_CLOCK = 4.0
@@ -35,6 +41,7 @@ class RunResult:
         robot: The robot that ran it.
         achieved: Whether the goal was believed, and went on being believed when looked at again.
         reason: Why, as a sentence.
+        recoveries: The reasons for which the arm had stopped and was set going again.
         cycles: How many cycles it took.
         actions: The actions that were started, with the cycle and how they ended.
         trace: The trace file.
@@ -47,6 +54,7 @@ class RunResult:
     cycles: int
     actions: tuple[ActionRecord, ...]
     trace: str
+    recoveries: tuple[str, ...] = ()
 
     def to_json(self) -> dict[str, object]:
         """Give the JSON document of `icarus run --json`."""
@@ -58,6 +66,7 @@ class RunResult:
             "cycles": self.cycles,
             "actions": [asdict(action) for action in self.actions],
             "trace": self.trace,
+            "recoveries": list(self.recoveries),
         }
 
 
@@ -74,6 +83,11 @@ class RunOptions:
         trace: The trace file; None chooses a new one under `traces/`.
         clock: Robot seconds per second of the stand-in.
         limits: When the loop gives up.
+        resume: The trace of a run that was cut off, to be taken up and gone on with.
+        operator: Whose word it takes to set the arm going again after it was stopped or lost;
+            None: nobody's, the run ends there.
+        cell: What the simulated cell is like, person and mishaps included; None for the usual.
+        faults: What goes wrong with the stand-in that is started, and when.
     """
 
     robot: str | None = None
@@ -84,6 +98,10 @@ class RunOptions:
     trace: Path | None = None
     clock: float = DEFAULT_CLOCK
     limits: LoopLimits | None = None
+    resume: Path | None = None
+    operator: Operator | None = None
+    cell: CellParameters | None = None
+    faults: Sequence[Mapping[str, object]] = ()
 
 
 def run_task(
@@ -110,20 +128,22 @@ def run_task(
     options = options or RunOptions()
     chosen = find_task(domain, task)
     config = load_robot(options.robot or chosen.robot or DEFAULT_ROBOT)
-    path = options.trace or _new_trace_path(chosen.name, options.seed)
+    cut_off = None
+    if options.resume is not None:
+        cut_off = read_cut_off(options.resume, domain, chosen.name, config.model)
+    path = options.resume or options.trace or _new_trace_path(chosen.name, options.seed)
     ensure_writable(path)
     with open_workplace(
         config,
         load_parts(),
         address=options.address,
         live=options.live,
-        seed=options.seed,
-        clock=options.clock,
+        setting=_setting(options, cut_off, path),
         log=path,
     ) as workplace:
         if announce is not None:
             announce(workplace.words)
-        return run_at(workplace, domain, chosen, config, options, path, observer)
+        return run_at(workplace, domain, chosen, config, options, path, observer, cut_off)
 
 
 def run_at(
@@ -134,6 +154,7 @@ def run_at(
     options: RunOptions,
     trace: Path,
     observer: Callable[[CycleReport], None] | None = None,
+    cut_off: CutOff | None = None,
 ) -> RunResult:
     """Run a task at a workplace that stands already; otherwise as `run_task`.
 
@@ -144,21 +165,29 @@ def run_at(
     if missing:
         raise DomainError(missing, domain.source)
     parameters = replace(anchoring_parameters(), use_attachments=options.attachments)
-    first = header(
-        domain,
-        task.goals,
-        given=task.init,
-        others=list(task.agents),
-        long_term=False,
-        task=task.name,
-        robot=config.model,
-        seed=options.seed,
-        workplace=workplace.words,
-        anchoring=_plain(asdict(parameters)),
-    )
-    agent = Agent(domain, task.goals, given=task.init, others=task.agents, long_term=False)
+    if cut_off is None:
+        agent = Agent(domain, task.goals, given=task.init, others=task.agents, long_term=False)
+        first = header(
+            domain,
+            task.goals,
+            given=task.init,
+            others=list(task.agents),
+            long_term=False,
+            task=task.name,
+            robot=config.model,
+            seed=options.seed,
+            workplace=workplace.words,
+            anchoring=_plain(asdict(parameters)),
+        )
+    else:
+        agent, first = cut_off.agent, None
+    keep = world_keeper(workplace, trace)
+    watchers = [keep] if observer is None else [keep, observer]
     with TraceWriter(trace, first) as writer:
-        result = loop_at(workplace, agent, config, parameters, options, observer, writer).run()
+        loop = loop_at(workplace, agent, config, parameters, options, watchers, writer, cut_off)
+        result = loop.run()
+    if result.achieved:
+        world_path(trace).unlink(missing_ok=True)  # nobody will want to go on with it
     return RunResult(
         task.name,
         config.model,
@@ -167,6 +196,7 @@ def run_at(
         result.cycles,
         result.actions,
         str(trace),
+        result.recoveries,
     )
 
 
@@ -176,19 +206,46 @@ def loop_at(
     config: RobotConfig,
     parameters: AnchoringParameters,
     options: RunOptions,
-    observer: Callable[[CycleReport], None] | None = None,
+    observers: Sequence[Callable[[CycleReport], None]] = (),
     trace: TraceWriter | None = None,
+    cut_off: CutOff | None = None,
 ) -> Loop:
     """Give the loop that runs an agent at a workplace."""
+    prepare()
+    anchoring = Anchoring(parameters)
+    if cut_off is not None:
+        anchoring.state = cut_off.anchoring
+    colleague = CellColleague(workplace.cell, workplace.source, known_actions(agent.domain))
+    taken_up = None
+    if cut_off is not None:
+        taken_up = TakenUp(cut_off.anchoring.anchors, cut_off.interrupted)
     return Loop(
         agent,
-        Anchoring(parameters),
+        anchoring,
         workplace.driver,
         workplace.source,
         config,
         trace=trace,
-        observer=observer,
+        observers=observers,
         limits=options.limits,
+        people=People(colleague, options.operator),
+        taken_up=taken_up,
+    )
+
+
+def _setting(options: RunOptions, cut_off: CutOff | None, trace: Path) -> Setting:
+    """Give what the simulated part is like; of a run that was cut off, as it was left."""
+    setting = Setting(
+        seed=options.seed, clock=options.clock, cell=options.cell, faults=options.faults
+    )
+    if cut_off is None or cut_off.joints is None:
+        return setting
+    return replace(
+        setting,
+        seed=cut_off.seed,
+        joints=cut_off.joints,
+        gripper_closed=cut_off.gripper_closed,
+        world=read_world(trace),
     )
 
 

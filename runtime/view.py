@@ -14,7 +14,7 @@ from rich.text import Text
 
 from aapa import Anchor, AnchorStatus
 from icarus_lite import DecisionKind, Status
-from runtime.loop import CycleReport
+from runtime.cycle_report import CycleReport
 from runtime.percepts import HAND_TYPE
 
 _STYLES: Final = {

@@ -2,45 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from aapa import Camera, Detection
 from runtime.addresses import is_loopback
-from runtime.cell import Cell
+from runtime.cell import Cell, CellParameters
+from runtime.cell.contact import Contact
+from runtime.cell_source import CellSource, Wires
 from runtime.config import RobotConfig, load_robot
 from runtime.controller.bench_client import BenchClient
 from runtime.controller.process import ControllerProcess
-from runtime.drivers import ArmState, Driver, DryRunDriver, UrDriver
+from runtime.drivers import Driver, DryRunDriver, UrDriver
 from runtime.errors import UsageError
+from runtime.kinematics import Joints
 from runtime.parts import PartModel, load_parts
-
-
-class CellSource:
-    """Percepts from the simulated cell, which follows the arm's measured joints.
-
-    Args:
-        cell: The cell.
-        feel: Tells the gripper's sensor whether a part is between the fingers.
-    """
-
-    def __init__(self, cell: Cell, feel: Callable[[bool], None]) -> None:
-        self._cell = cell
-        self._feel = feel
-        self._gripped = False
-
-    def update(self, arm: ArmState) -> None:
-        """Move the scene to where the arm is, and the gripper's sensor with it."""
-        gripped = self._cell.update(arm.joints, arm.gripper_closed)
-        if gripped != self._gripped:
-            self._feel(gripped)
-            self._gripped = gripped
-
-    def look(self) -> tuple[list[Detection], Camera]:
-        """Give the next frame's detections and the camera that took it."""
-        return self._cell.look()
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +28,7 @@ class Workplace:
         driver: The body.
         source: Where percepts come from.
         cell: The simulated cell, whose ground truth may judge a run and never enters it.
+        controller: The stand-in controller that was started for the run, or None.
         words: A sentence that says what this is, for the person who watches.
     """
 
@@ -58,6 +36,31 @@ class Workplace:
     source: CellSource
     cell: Cell
     words: str
+    controller: ControllerProcess | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Setting:
+    """What the simulated part of a workplace is like.
+
+    Args:
+        seed: Of the scene and the detector's noise.
+        clock: Robot seconds per second of the stand-in that is started.
+        cell: Everything else about the cell; None for the usual.
+        faults: What goes wrong with the stand-in, and when: see `runtime.controller.faults`.
+        joints: Where the arm stands at first, rad; None for its look pose.
+        gripper_closed: Whether its gripper is closed at first.
+        world: Where the cell's things are at first, as `Cell.snapshot` gave it; None for the
+            layout of the seed.
+    """
+
+    seed: int = 0
+    clock: float = 1.0
+    cell: CellParameters | None = None
+    faults: Sequence[Mapping[str, object]] = ()
+    joints: Joints | None = None
+    gripper_closed: bool = False
+    world: Mapping[str, object] | None = None
 
 
 @contextmanager
@@ -67,8 +70,7 @@ def open_workplace(
     *,
     address: str | None = None,
     live: bool = False,
-    seed: int = 0,
-    clock: float = 1.0,
+    setting: Setting | None = None,
     log: Path | None = None,
 ) -> Iterator[Workplace]:
     """Put a workplace together, and take it apart again whatever happens.
@@ -83,8 +85,7 @@ def open_workplace(
         address: Host of a controller, or None.
         live: Whether a real arm may move. There is no source of percepts for a real cell yet, and
             an arm is never moved on simulated beliefs, so this is refused.
-        seed: Of the scene and the detector's noise.
-        clock: Robot seconds per second of the stand-in this starts.
+        setting: What the simulated part is like.
         log: Beside this path the controller and the driver write what they have to say.
 
     Raises:
@@ -98,10 +99,24 @@ def open_workplace(
                 "simulated cell. A real arm is never moved on simulated beliefs: leave --live out "
                 "for a dry run, or give a loopback address for a stand-in controller"
             )
-        cell = stack.enter_context(_closing(Cell(config.model, seed)))
-        driver, feel, words = _body(stack, config, parts, address, clock, log)
-        stack.callback(driver.close)
-        yield Workplace(driver, CellSource(cell, feel), cell, words)
+        setting = setting or Setting()
+        cell = stack.enter_context(_closing(Cell(config.model, setting.seed, setting.cell)))
+        if setting.world is not None:
+            cell.restore(setting.world)
+        body = _body(stack, config, parts, address, setting, log)
+        stack.callback(body.driver.close)
+        source = CellSource(cell, body.wires)
+        yield Workplace(body.driver, source, cell, body.words, body.controller)
+
+
+@dataclass(frozen=True, slots=True)
+class _Body:
+    """A driver, the wires from the cell to what it drives, and a sentence on what that is."""
+
+    driver: Driver
+    wires: Wires
+    words: str
+    controller: ControllerProcess | None = None
 
 
 def _body(
@@ -109,31 +124,50 @@ def _body(
     config: RobotConfig,
     parts: Mapping[str, PartModel],
     address: str | None,
-    clock: float,
+    setting: Setting,
     log: Path | None,
-) -> tuple[Driver, Callable[[bool], None], str]:
-    """Give the driver, the wire to its gripper's sensor, and a sentence on what it drives."""
+) -> _Body:
+    joints = config.look_joints if setting.joints is None else setting.joints
     if address is not None and not is_loopback(address):
-        dry = DryRunDriver(config, parts)
-        return dry, dry.feel, f"dry run: a virtual {config.model}; nothing is sent to {address}"
+        dry = DryRunDriver(config, parts, joints=joints)
+        words = f"dry run: a virtual {config.model}; nothing is sent to {address}"
+        return _Body(dry, Wires(dry.feel), words)
+    controller, bench = None, None
     if address is None:
         controller = stack.enter_context(
             ControllerProcess.start(
                 config.model,
-                clock=clock,
-                joints=config.look_joints,
+                clock=setting.clock,
+                joints=joints,
+                faults=setting.faults,
+                seed=setting.seed,
                 log=None if log is None else log.with_suffix(".controller.log"),
             )
         )
-        address, wire = controller.address, controller.set_tool_input
+        address, bench = controller.address, controller.bench
     else:
-        bench = BenchClient(address)
-        stack.callback(bench.close)
-        wire = bench.set_tool_input
+        client = BenchClient(address)
+        stack.callback(client.close)
+        bench = client.request
+    if setting.gripper_closed:
+        bench({"outputs": {f"tool_digital_out_{config.gripper.output}": True}})
     note = None if log is None else stack.enter_context(_log_file(log.with_suffix(".driver.log")))
     driver = UrDriver(address, config, parts, log=note)
     words = f"simulated cell; stand-in controller (not a robot) at {address}"
-    return driver, lambda on: wire(config.gripper.input, on), words
+    return _Body(driver, _wires(bench, config), words, controller)
+
+
+def _wires(bench: Callable[[Mapping[str, object]], object], config: RobotConfig) -> Wires:
+    """Wire the cell to a stand-in controller's bench."""
+    sensor = f"tool_digital_in_{config.gripper.input}"
+
+    def feel(on: bool) -> None:  # noqa: FBT001 - a sensor's level
+        bench({"inputs": {sensor: on}})
+
+    def touch(contact: Contact | None) -> None:
+        bench({"contact": None if contact is None else contact.request()})
+
+    return Wires(feel, touch)
 
 
 @contextmanager

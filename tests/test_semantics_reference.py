@@ -109,6 +109,7 @@ class Run:
             [b for b in before.beliefs if b not in now],
             frame.outcomes,
             [percept.name for percept in now.percepts],
+            now.withdrawn,
         )
 
     def answer(self, question: str) -> str:
@@ -116,7 +117,8 @@ class Run:
         if kind == "why":
             (condition,) = parse_conditions(asked)
             args = tuple(term.value for term in condition.atom.args)
-            return str(explain(Belief(condition.atom.predicate, args), self.memory.state))
+            belief = Belief(condition.atom.predicate, args)
+            return str(explain(belief, self.memory.state, chronicle=self.chronicle))
         assert kind == "why-not"
         context = Context(
             self.domain,

@@ -10,7 +10,7 @@ from recorded_runs import record
 
 ROOT = Path(__file__).parents[1]
 _OF_RUNS = {"task", "robot", "seed", "workplace", "anchoring", "others", "long_term"}
-_OF_CYCLES = {"detections", "anchors", "arm", "timings"}
+_OF_CYCLES = {"detections", "anchors", "arm", "timings", "withdrawn", "doubts"}
 
 
 def keys(heading: str) -> set[str]:

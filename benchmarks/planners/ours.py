@@ -1,39 +1,40 @@
-"""One problem, in a process of its own, the way `icarus pddl import` and `icarus plan` take it."""
+"""One problem, in a process of its own, the way `icarus pddl import` and `icarus plan` take it.
+
+python ours.py DOMAIN PROBLEM SECONDS [improve]
+"""
 
 from __future__ import annotations
 
-import argparse
+import atexit
+import gc
 import json
 import sys
 import time
-from pathlib import Path
+from os.path import abspath, dirname
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+gc.set_threshold(50_000)  # this and the next line as `icarus` does
+atexit.register(gc.freeze)
+sys.path.insert(0, dirname(dirname(abspath(__file__))))  # noqa: PTH100, PTH120 - as its peer
 
-from icarus_lite.planning.search import Limits, improve, search
-from planners.planned import actions, imported
+from icarus_lite.planning.search import Limits, search  # noqa: E402 - no garbage is made here
+from planners.planned import actions, imported  # noqa: E402
 
 STARTED = time.process_time()
 
 
-def main() -> None:
+def main(domain: str, problem: str, seconds: float, *, shorter: bool) -> None:
     """Plan, and print what came of it as JSON."""
-    parser = argparse.ArgumentParser()
-    parser.add_argument("domain", type=Path)
-    parser.add_argument("problem", type=Path)
-    parser.add_argument("--seconds", type=float, default=20)
-    parser.add_argument("--improve", action="store_true")
-    args = parser.parse_args()
-    problem = imported(args.domain, args.problem)
+    given = imported(domain, problem)
     read = time.process_time()
-    task = problem.ground()
+    task = given.ground()
     grounded = time.process_time()
-    found = search(task, Limits(seconds=args.seconds - grounded, clock=time.process_time))
+    found = search(task, Limits(seconds=seconds - grounded, clock=time.process_time))
     searched = time.process_time()
     plan = found.plan
-    if plan is not None and args.improve:
-        limits = Limits(seconds=args.seconds - searched, clock=time.process_time)
-        plan = improve(task, plan, limits)
+    if plan is not None and shorter:
+        from icarus_lite.planning.search import improve  # noqa: PLC0415 - only if asked for
+
+        plan = improve(task, plan, Limits(seconds=seconds - searched, clock=time.process_time))
     report = {
         "plan": None if plan is None else actions(task, plan),
         "unsolvable": plan is None and found.exhausted,
@@ -49,4 +50,4 @@ def main() -> None:
     print(json.dumps(report))
 
 
-main()
+main(sys.argv[1], sys.argv[2], float(sys.argv[3]), shorter="improve" in sys.argv[4:])

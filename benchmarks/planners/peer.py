@@ -1,9 +1,12 @@
-"""One problem, in a process of its own: pyperplan's greedy best-first search with hFF."""
+"""One problem, in a process of its own: pyperplan's greedy best-first search with hFF.
+
+python peer.py DOMAIN PROBLEM
+"""
 
 from __future__ import annotations
 
-import argparse
 import json
+import sys
 import time
 from typing import Any
 
@@ -24,13 +27,9 @@ class Counted(hFFHeuristic):  # type: ignore[misc]
         return super().__call__(node)
 
 
-def main() -> None:
+def main(domain: str, problem: str) -> None:
     """Plan, and print what came of it as JSON."""
-    parser = argparse.ArgumentParser()
-    parser.add_argument("domain")
-    parser.add_argument("problem")
-    args = parser.parse_args()
-    task = _ground(_parse(args.domain, args.problem))
+    task = _ground(_parse(domain, problem))
     plan = SEARCHES["gbfs"](task, Counted(task))
     report = {
         "plan": None if plan is None else [step.name.strip("()").split() for step in plan],
@@ -42,4 +41,4 @@ def main() -> None:
     print(json.dumps(report))
 
 
-main()
+main(sys.argv[1], sys.argv[2])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 from icarus_lite.inference import InferenceEngine, given_memory, given_percepts
 from icarus_lite.language.checking.report import Report
@@ -14,6 +14,9 @@ from icarus_lite.language.syntax import Domain
 from icarus_lite.planning import Imagination
 from icarus_lite.planning.ground_task import GroundTask
 from icarus_lite.planning.grounding import PlanningDomain, ground_goals
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +32,7 @@ class Imported:
         return ground_goals(self.prepared, self.imagination, self.domain.tasks[0].goals).task
 
 
-def imported(domain: Path, problem: Path) -> Imported:
+def imported(domain: Path | str, problem: Path | str) -> Imported:
     """Read PDDL files, and infer what is believed in the beginning."""
     first, second = (read_source(path, str(path)) for path in (domain, problem))
     schema, _ = read_pddl_domain(first)
@@ -40,7 +43,7 @@ def imported(domain: Path, problem: Path) -> Imported:
     assert read is not None, f"{problem} cannot be translated"
     [task] = read.tasks
     engine = InferenceEngine(read)
-    memory = engine.step(given_memory(read, task.init), given_percepts(read, task.init))
+    memory = engine.step_once(given_memory(read, task.init), given_percepts(read, task.init))
     imagination = Imagination(read, memory, engine.closure, engine.evaluator)
     return Imported(PlanningDomain(read, imagination.evaluator), imagination, read)
 

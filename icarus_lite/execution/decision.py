@@ -8,7 +8,7 @@ from enum import StrEnum
 from icarus_lite.execution.path import SkillPath
 from icarus_lite.execution.plan_following import PlanStatus
 from icarus_lite.execution.requests import Request
-from icarus_lite.inference import BeliefState
+from icarus_lite.inference import BeliefState, Withdrawal
 from icarus_lite.language.syntax import Atom, Condition
 from icarus_lite.planning import Candidate, Failure, PlanStep
 from icarus_lite.symbols import Action, Belief
@@ -142,6 +142,11 @@ class Decision:
     def beliefs(self) -> tuple[Belief, ...]:
         """All beliefs of this cycle, sorted."""
         return self.state.beliefs
+
+    @property
+    def withdrawn(self) -> tuple[Withdrawal, ...]:
+        """What would have persisted, and is withdrawn in this cycle, with what contradicts it."""
+        return self.state.withdrawn
 
     @property
     def action(self) -> Action | None:

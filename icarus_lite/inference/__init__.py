@@ -1,40 +1,100 @@
 """Inference: percepts and the last actions in, beliefs with their supports out."""
 
-from icarus_lite.inference.attachment import ATTACHED, Hierarchy, Link, advance
-from icarus_lite.inference.closure import Closure
-from icarus_lite.inference.effects import Change, change_of
-from icarus_lite.inference.engine import BeliefState, InferenceEngine, Memory
-from icarus_lite.inference.explaining import (
-    Chronicle,
-    Context,
-    Period,
-    WhyNot,
-    what_ended,
-    why_not,
-    why_not_document,
-)
-from icarus_lite.inference.explanation import Explanation, explain
-from icarus_lite.inference.facts import (
-    Bindings,
-    FactStore,
-    ground,
-    match,
-    percept_fact,
-    percept_facts,
-    resolve,
-    unify,
-)
-from icarus_lite.inference.given import GIVEN, given_memory, given_percepts
-from icarus_lite.inference.matching import Evaluator, Functions, Match, Matcher
-from icarus_lite.inference.near_miss import (
-    NearMiss,
-    Obstacle,
-    first_obstacle,
-    near_misses,
-    nearest_beliefs,
-)
-from icarus_lite.inference.network import Budget, ForgottenError
-from icarus_lite.inference.supports import Assertion, Derivation, Support, bind_pattern
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from icarus_lite._on_use import imported_on_use
+
+if TYPE_CHECKING:
+    from icarus_lite.inference.attachment import ATTACHED, Hierarchy, Link, advance
+    from icarus_lite.inference.closure import Closure
+    from icarus_lite.inference.contradictions import Doubt, Judgement, Withdrawal, carried_over
+    from icarus_lite.inference.effects import Change, change_of
+    from icarus_lite.inference.engine import BeliefState, InferenceEngine, Memory
+    from icarus_lite.inference.explaining import (
+        Chronicle,
+        Context,
+        Period,
+        WhyNot,
+        what_ended,
+        why_not,
+        why_not_document,
+    )
+    from icarus_lite.inference.explanation import Explanation, explain
+    from icarus_lite.inference.facts import (
+        Bindings,
+        FactStore,
+        ground,
+        match,
+        percept_fact,
+        percept_facts,
+        resolve,
+        unify,
+    )
+    from icarus_lite.inference.given import GIVEN, given_memory, given_percepts
+    from icarus_lite.inference.matching import Evaluator, Functions, Match, Matcher
+    from icarus_lite.inference.near_miss import (
+        NearMiss,
+        Obstacle,
+        first_obstacle,
+        near_misses,
+        nearest_beliefs,
+    )
+    from icarus_lite.inference.network import Budget, ForgottenError
+    from icarus_lite.inference.supports import Assertion, Derivation, Support, bind_pattern
+
+_HOMES = {
+    "ATTACHED": "attachment",
+    "Assertion": "supports",
+    "BeliefState": "engine",
+    "Bindings": "facts",
+    "Budget": "network",
+    "Change": "effects",
+    "Chronicle": "explaining",
+    "Closure": "closure",
+    "Context": "explaining",
+    "Derivation": "supports",
+    "Doubt": "contradictions",
+    "Evaluator": "matching",
+    "Explanation": "explanation",
+    "FactStore": "facts",
+    "ForgottenError": "network",
+    "Functions": "matching",
+    "GIVEN": "given",
+    "Hierarchy": "attachment",
+    "InferenceEngine": "engine",
+    "Judgement": "contradictions",
+    "Link": "attachment",
+    "Match": "matching",
+    "Matcher": "matching",
+    "Memory": "engine",
+    "NearMiss": "near_miss",
+    "Obstacle": "near_miss",
+    "Period": "explaining",
+    "Support": "supports",
+    "WhyNot": "explaining",
+    "Withdrawal": "contradictions",
+    "advance": "attachment",
+    "bind_pattern": "supports",
+    "carried_over": "contradictions",
+    "change_of": "effects",
+    "explain": "explanation",
+    "first_obstacle": "near_miss",
+    "given_memory": "given",
+    "given_percepts": "given",
+    "ground": "facts",
+    "match": "facts",
+    "near_misses": "near_miss",
+    "nearest_beliefs": "near_miss",
+    "percept_fact": "facts",
+    "percept_facts": "facts",
+    "resolve": "facts",
+    "unify": "facts",
+    "what_ended": "explaining",
+    "why_not": "explaining",
+    "why_not_document": "explaining",
+}
 
 __all__ = [
     "ATTACHED",
@@ -48,6 +108,7 @@ __all__ = [
     "Closure",
     "Context",
     "Derivation",
+    "Doubt",
     "Evaluator",
     "Explanation",
     "FactStore",
@@ -55,6 +116,7 @@ __all__ = [
     "Functions",
     "Hierarchy",
     "InferenceEngine",
+    "Judgement",
     "Link",
     "Match",
     "Matcher",
@@ -64,8 +126,10 @@ __all__ = [
     "Period",
     "Support",
     "WhyNot",
+    "Withdrawal",
     "advance",
     "bind_pattern",
+    "carried_over",
     "change_of",
     "explain",
     "first_obstacle",
@@ -83,3 +147,5 @@ __all__ = [
     "why_not",
     "why_not_document",
 ]
+
+__getattr__ = imported_on_use(__name__, _HOMES)

@@ -7,13 +7,16 @@ what was perceived and given then, and answers in its place.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from icarus_lite.inference.canonical import canonical
 from icarus_lite.inference.facts import FactStore, Lineages, percept_facts
-from icarus_lite.inference.network import Changes, Network
 from icarus_lite.inference.supports import Support
 from icarus_lite.inference.views import Entry, Key
 from icarus_lite.symbols import Belief, Percept, Value
+
+if TYPE_CHECKING:
+    from icarus_lite.inference.network import Changes, Network
 
 
 class BeliefSupports(Mapping[Belief, tuple[Support, ...]]):

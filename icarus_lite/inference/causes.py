@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Mapping
 
-from icarus_lite.inference.network.history import ForgottenError
 from icarus_lite.inference.supports import Support
 from icarus_lite.symbols import Belief
 
@@ -57,6 +56,8 @@ class Causes:
             ForgottenError: it is no cycle of this run.
         """
         if not self._began <= cycle <= self._last:
+            from icarus_lite.inference.network import ForgottenError  # noqa: PLC0415 - seldom
+
             raise ForgottenError(cycle, self._began, self._last)
         return cycle - self._ahead
 
@@ -67,8 +68,7 @@ class Causes:
             if later <= cycle:
                 break
             for belief, was in written_over.items():
-                if was is None:
-                    del found[belief]
-                else:
+                found.pop(belief, None)  # it may have had other attributes
+                if was is not None:
                     found[belief] = was
         return found

@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from icarus_lite.errors import FrameError
-from icarus_lite.inference.attachment import ATTACHED, Hierarchy, Link, advance
+from icarus_lite.inference.attachment import ATTACHED, Hierarchy, advance
 from icarus_lite.inference.belief_supports import BeliefSupports, LazyFacts
 from icarus_lite.inference.causes import Causes
 from icarus_lite.inference.closure import Closure
+from icarus_lite.inference.contradictions import Doubt, Judgement, Withdrawal, judge
 from icarus_lite.inference.effects import Change, change_by_action
 from icarus_lite.inference.facts import (
     FactStore,
@@ -19,13 +21,17 @@ from icarus_lite.inference.facts import (
     check_values,
     percept_facts,
 )
+from icarus_lite.inference.lasting import Given, Lasting, hierarchy_of
 from icarus_lite.inference.matching import Evaluator, Functions
-from icarus_lite.inference.network import Budget, Network, compile_domain
+from icarus_lite.inference.present import PresentFacts
 from icarus_lite.inference.supports import Assertion, Support
 from icarus_lite.language.checking.stratification import strata
 from icarus_lite.language.percept_types import lineages
 from icarus_lite.language.syntax import Domain
-from icarus_lite.symbols import Belief, Outcome, Percept, Status, Value
+from icarus_lite.symbols import Belief, Outcome, Percept, Status
+
+if TYPE_CHECKING:
+    from icarus_lite.inference.network import Budget, Changes, Network
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,8 +43,11 @@ class BeliefState:
         percepts: The percepts, as they came.
         supports: Each belief (percepts left out) with all its supports, never empty.
         hierarchy: The attachment hierarchy behind the `attached` beliefs.
-        notes: What the person should know, such as an attachment refused as circular.
+        notes: What the person should know, such as an attachment refused as circular, or a belief
+            withdrawn.
         lineages: Each percept type with all types that its percepts belong to, its own first.
+        withdrawn: What persisted up to now and was withdrawn, for what contradicts it.
+        doubts: What persists although something contradicts it, for that has not held for long.
     """
 
     cycle: int = -1
@@ -47,6 +56,8 @@ class BeliefState:
     hierarchy: Hierarchy = field(default_factory=Hierarchy)
     notes: tuple[str, ...] = ()
     lineages: Lineages = field(default_factory=dict)
+    withdrawn: tuple[Withdrawal, ...] = ()
+    doubts: tuple[Doubt, ...] = ()
 
     def __contains__(self, belief: Belief) -> bool:
         return belief in self.supports
@@ -120,10 +131,10 @@ class Memory:
 class InferenceEngine:
     """Derives the beliefs of each cycle from percepts and the last actions.
 
-    An effect of an action that succeeded is asserted and persists until an effect removes it or
-    an object in it is no longer perceived, unless concepts define its predicate: then perception
-    decides, each cycle, whether it holds. `attached` follows Algorithm 1. An action that failed
-    or still runs asserts nothing.
+    An effect of an action that succeeded is asserted and persists until an effect removes it, a
+    contradiction of the domain withdraws it, or an object in it is no longer perceived, unless
+    concepts define its predicate: then perception decides, each cycle, whether it holds.
+    `attached` follows Algorithm 1. An action that failed or still runs asserts nothing.
 
     What is believed lies in the memory that `step` takes and gives. The engine keeps a network
     that stands where the last step ended, so that the next one costs what has changed; from
@@ -137,8 +148,8 @@ class InferenceEngine:
     """
 
     __slots__ = (
-        "_budget", "_causes", "_network", "_order", "_past", "closure", "domain", "evaluator",
-        "lineages",
+        "_budget", "_causes", "_doubtful", "_network", "_order", "_past", "closure", "domain",
+        "evaluator", "lineages",
     )  # fmt: skip
 
     def __init__(
@@ -153,6 +164,7 @@ class InferenceEngine:
         self._network: Network | None = None
         self._causes = Causes()
         self._past: BeliefState | None = None
+        self._doubtful = frozenset(each.head.predicate for each in domain.contradictions)
 
     def step(
         self,
@@ -180,33 +192,13 @@ class InferenceEngine:
         cycle = memory.state.cycle + 1
         present = frozenset(percept.name for percept in seen)
         known = memory.known | present
-        asserted, hierarchy = dict(memory.asserted), memory.state.hierarchy
-        notes: list[str] = []
-        before: FactStore | None = memory.state.facts() if outcomes else None
-        for number, outcome in enumerate(outcomes):
-            check_arguments(outcome.action)
-            if outcome.status is not Status.SUCCEEDED:
-                continue
-            change = (changes or {}).get(number)
-            if change is None:
-                if before is None:  # what the outcomes so far have left, as far as was perceived
-                    percepts_then = memory.state.percepts
-                    before = self._imagine(percepts_then, asserted, hierarchy)
-                change = change_by_action(
-                    self.domain.skills, outcome.action, before, self.evaluator
-                )
-            cause = Assertion(outcome.action, cycle)
-            asserted = self._assert(asserted, change, cause)
-            hierarchy, refused = hierarchy.with_change(change, outcome.action, cycle)
-            notes.extend(refused)
-            hierarchy, refused = advance(hierarchy, self.domain.attachments, outcome.action, cycle)
-            notes.extend(refused)
-            before = None
-        gone = known - present
-        asserted = {b: a for b, a in asserted.items() if gone.isdisjoint(b.args)}
-        hierarchy = hierarchy.without(p for p in hierarchy.pairs() if not gone.isdisjoint(p))
-        state = self._infer(cycle, seen, asserted, hierarchy, tuple(notes))
-        return Memory(state, asserted, known)
+        lasting, notes = self._after(memory, cycle, outcomes, changes or {})
+        lasting = lasting.without_objects(known - present)
+        net, judgement = self._follow(cycle, seen, lasting.given, memory.state.doubts)
+        lasting = lasting.without(each.belief for each in judgement.withdrawn)
+        notes += tuple(map(str, judgement.withdrawn))
+        state = self._state(cycle, seen, lasting, notes, judgement, net)
+        return Memory(state, lasting.asserted, known)
 
     def recall(
         self,
@@ -216,6 +208,7 @@ class InferenceEngine:
         hierarchy: Hierarchy,
         known: Iterable[str] = (),
         notes: tuple[str, ...] = (),
+        judgement: Judgement | None = None,
     ) -> Memory:
         """Give the memory of a cycle from what was recorded of it, and derive its beliefs anew.
 
@@ -226,14 +219,46 @@ class InferenceEngine:
             hierarchy: The attachments of then.
             known: The names of all objects perceived up to then; those of now are added.
             notes: What the person should know.
+            judgement: What was in doubt and was withdrawn in it; None for nothing. It is not
+                judged again.
 
         Raises:
             FrameError: as for `step`.
             InferenceError: as for `step`.
         """
         seen = _checked(percepts, self.lineages)
-        state = self._infer(cycle, seen, asserted, hierarchy, notes)
+        lasting = Lasting(asserted, hierarchy)
+        net, _ = self._follow(cycle, seen, lasting.given)
+        state = self._state(cycle, seen, lasting, notes, judgement or Judgement(), net)
         return Memory(state, asserted, frozenset(known) | {percept.name for percept in seen})
+
+    def step_once(self, memory: Memory, percepts: Iterable[Percept]) -> Memory:
+        """Infer the beliefs of a cycle that probably no other will follow, as `step` would.
+
+        There will be no network to keep up to date, which takes longer to compile than to ask
+        once. But what tests compare the numbers of many objects, a network finds faster.
+
+        Raises:
+            FrameError: as for `step`.
+            InferenceError: as for `step`.
+        """
+        lasting = Lasting(memory.asserted, memory.state.hierarchy)
+        given = lasting.given
+        if self._network is not None or any(each.predicate in self._doubtful for each in given):
+            return self.step(memory, percepts)
+        seen = _checked(percepts, self.lineages)
+        present = frozenset(percept.name for percept in seen)
+        if memory.known - present:
+            return self.step(memory, seen)
+        facts = FactStore(percept_facts(seen, self.lineages))
+        for belief in given:
+            facts.add(belief)
+        supports = dict(given)
+        for belief, derivations in self.closure.derive(facts).items():
+            supports[belief] = (*given.get(belief, ()), *derivations)
+        cycle, hierarchy = memory.state.cycle + 1, memory.state.hierarchy
+        state = BeliefState(cycle, seen, supports, hierarchy, (), self.lineages)
+        return Memory(state, memory.asserted, memory.known | present)
 
     def look_back(self, cycle: int) -> BeliefState:
         """Give what was believed in a cycle of the run that the last step belongs to.
@@ -250,9 +275,40 @@ class InferenceEngine:
             then = self._network.recall(number)
             given, percepts = self._causes.at(cycle), then.percepts()
             supports = BeliefSupports(then, self._order, given, percepts)
-            hierarchy = _hierarchy(given)
+            hierarchy = hierarchy_of(given)
             self._past = BeliefState(cycle, percepts, supports, hierarchy, (), self.lineages)
         return self._past
+
+    def _after(
+        self,
+        memory: Memory,
+        cycle: int,
+        outcomes: Sequence[Outcome],
+        changes: Mapping[int, Change],
+    ) -> tuple[Lasting, tuple[str, ...]]:
+        """Give what persists after some outcomes, and what a person should know of it."""
+        asserted, hierarchy = dict(memory.asserted), memory.state.hierarchy
+        notes: list[str] = []
+        before: FactStore | None = memory.state.facts() if outcomes else None
+        for number, outcome in enumerate(outcomes):
+            check_arguments(outcome.action)
+            if outcome.status is not Status.SUCCEEDED:
+                continue
+            change = changes.get(number)
+            if change is None:
+                if before is None:  # what the outcomes so far have left, as far as was perceived
+                    percepts_then = memory.state.percepts
+                    before = self._imagine(percepts_then, Lasting(asserted, hierarchy))
+                change = change_by_action(
+                    self.domain.skills, outcome.action, before, self.evaluator
+                )
+            asserted = self._assert(asserted, change, Assertion(outcome.action, cycle))
+            hierarchy, refused = hierarchy.with_change(change, outcome.action, cycle)
+            notes.extend(refused)
+            hierarchy, refused = advance(hierarchy, self.domain.attachments, outcome.action, cycle)
+            notes.extend(refused)
+            before = None
+        return Lasting(asserted, hierarchy), tuple(notes)
 
     def _assert(
         self, asserted: Mapping[Belief, Assertion], change: Change, cause: Assertion
@@ -263,56 +319,71 @@ class InferenceEngine:
                 kept[belief] = cause
         return kept
 
-    def _infer(
+    def _follow(
         self,
         cycle: int,
         percepts: tuple[Percept, ...],
-        asserted: Mapping[Belief, Assertion],
-        hierarchy: Hierarchy,
-        notes: tuple[str, ...],
-    ) -> BeliefState:
-        given = _given(asserted, hierarchy)
-        network = self._network
-        if network is None:
-            network = compile_domain(self.domain, self.evaluator.functions).network(self._budget)
-        changes = network.update_snapshot(percepts, given)
-        self._network, self._past = network, None
-        self._causes.note(cycle, network.cycle, given, network.first_cycle)
-        supports = BeliefSupports(network, self._order, given, percepts, changes)
-        return BeliefState(cycle, percepts, supports, hierarchy, notes, self.lineages)
+        given: Given,
+        doubts: Sequence[Doubt] | None = None,
+    ) -> tuple[Changes, Judgement]:
+        """Let the network follow to a cycle, and withdraw what does not stand up to it.
 
-    def _imagine(
+        Args:
+            cycle: Its number.
+            percepts: What is perceived.
+            given: What persists up to then.
+            doubts: Those of the cycle before; None if nothing is to be judged.
+        """
+        network, judgement = self._network, Judgement()
+        if network is None:
+            from icarus_lite.inference.network import compile_domain  # noqa: PLC0415 - if needed
+
+            network = compile_domain(self.domain, self.evaluator.functions).network(self._budget)
+
+        def review() -> Iterator[Belief]:
+            nonlocal judgement
+            beliefs = BeliefSupports(network, self._order, given, percepts)
+            facts = PresentFacts(percepts, self.lineages, beliefs, self.closure.concepts)
+            rules, before = self.domain.contradictions, doubts or ()
+            judgement = judge(rules, given, facts, cycle, before, self.evaluator)
+            return (each.belief for each in judgement.withdrawn)
+
+        speak = doubts is not None and any(each.predicate in self._doubtful for each in given)
+        changes = network.update_snapshot(percepts, given, review if speak else None)
+        self._network, self._past = network, None
+        return changes, judgement
+
+    def _state(
         self,
+        cycle: int,
         percepts: tuple[Percept, ...],
-        asserted: Mapping[Belief, Assertion],
-        hierarchy: Hierarchy,
-    ) -> FactStore:
+        lasting: Lasting,
+        notes: tuple[str, ...],
+        judgement: Judgement,
+        changes: Changes,
+    ) -> BeliefState:
+        """Give the beliefs of the cycle in which the network stands."""
+        network, given = self._network, lasting.given
+        assert network is not None
+        self._causes.note(cycle, network.cycle, given, network.first_cycle)
+        return BeliefState(
+            cycle,
+            percepts,
+            BeliefSupports(network, self._order, given, percepts, changes),
+            lasting.hierarchy,
+            notes,
+            self.lineages,
+            judgement.withdrawn,
+            judgement.doubts,
+        )
+
+    def _imagine(self, percepts: tuple[Percept, ...], lasting: Lasting) -> FactStore:
         """Give all that would be believed, without saying that it is."""
         facts = FactStore(percept_facts(percepts, self.lineages))
-        for belief in _given(asserted, hierarchy):
+        for belief in lasting.given:
             facts.add(belief)
         self.closure.derive(facts)
         return facts
-
-
-def _given(
-    asserted: Mapping[Belief, Assertion], hierarchy: Hierarchy
-) -> dict[Belief, tuple[Support, ...]]:
-    """Give the beliefs that rest on actions, each with the one that asserted it."""
-    given: dict[Belief, tuple[Support, ...]] = {b: (cause,) for b, cause in asserted.items()}
-    for belief, link in hierarchy.beliefs():
-        given[belief] = (Assertion(link.action, link.cycle),)
-    return given
-
-
-def _hierarchy(given: Mapping[Belief, tuple[Support, ...]]) -> Hierarchy:
-    """Give the attachments among the beliefs that rest on actions."""
-    links: dict[Value, Link] = {}
-    for belief, (cause, *_) in given.items():
-        if belief.predicate == ATTACHED and isinstance(cause, Assertion):
-            child, parent = belief.args
-            links[child] = Link(parent, cause.action, cause.cycle)
-    return Hierarchy(links)
 
 
 def _checked(percepts: Iterable[Percept], lineages: Lineages) -> tuple[Percept, ...]:

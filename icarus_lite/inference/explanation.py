@@ -11,8 +11,9 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from icarus_lite.inference.contradictions import Doubt, Withdrawal
 from icarus_lite.inference.engine import BeliefState
 from icarus_lite.inference.explaining.chronicle import Chronicle, Period
 from icarus_lite.inference.explaining.grounds import well_founded
@@ -37,6 +38,8 @@ class Explanation:
         premises: The explanations of the percepts and beliefs it was derived from.
         alternatives: The same belief by its other supports, where they were asked for.
         periods: When it was held, this cycle included, as far as that is on record.
+        withdrawn: When it was withdrawn up to this cycle, and what contradicted it.
+        doubts: What contradicts it now, though not for long enough.
     """
 
     belief: Belief
@@ -45,6 +48,8 @@ class Explanation:
     premises: tuple[Explanation, ...] = ()
     alternatives: tuple[Explanation, ...] = ()
     periods: tuple[Period, ...] = ()
+    withdrawn: tuple[tuple[int, Withdrawal], ...] = ()
+    doubts: tuple[Doubt, ...] = ()
 
     @property
     def subject(self) -> str:
@@ -101,7 +106,17 @@ class Explanation:
             for each in order
         ]
         periods = [[period.first, period.last] for period in self.periods]
-        return {"cycle": self.cycle, "periods": periods, "nodes": nodes}
+        document: dict[str, object] = {"cycle": self.cycle, "periods": periods, "nodes": nodes}
+        if self.withdrawn:
+            document["withdrawn"] = [
+                {"cycle": cycle, "because": list(each.because), "cycles": each.cycles}
+                for cycle, each in self.withdrawn
+            ]
+        if self.doubts:
+            document["doubts"] = [
+                {"cycles": doubt.cycles, "limit": doubt.limit} for doubt in self.doubts
+            ]
+        return document
 
     def lines(self) -> Iterator[str]:
         """Give its text, a line at a time; what was told before is not told again."""
@@ -131,6 +146,11 @@ class Explanation:
                 times = f" {earlier} times before, and" if earlier else ""
                 held = ", ".join(map(str, lately))
                 parts.append((below, f"it has been believed{times} {held}"))
+            parts += [
+                (below, f"it was withdrawn in cycle {cycle}, because {found.reason}")
+                for cycle, found in each.withdrawn[-_PERIODS_TOLD:]
+            ]
+            parts += [(below, f"it is in doubt: {doubt}") for doubt in each.doubts]
             waiting += reversed(parts)
 
 
@@ -155,10 +175,23 @@ def explain(
     others: tuple[Explanation, ...] = ()
     if alternatives and found.support is not None:
         others = tuple(_others(found, state, proof))
-    periods = () if chronicle is None else chronicle.periods(belief)
-    if not others and not periods:
-        return found
-    return Explanation(belief, state.cycle, found.support, found.premises, others, periods)
+    return replace(
+        found,
+        alternatives=others,
+        periods=() if chronicle is None else chronicle.periods(belief),
+        withdrawn=() if chronicle is None else _withdrawn(belief, state.cycle, chronicle),
+        doubts=tuple(doubt for doubt in state.doubts if doubt.belief == belief),
+    )
+
+
+def _withdrawn(
+    belief: Belief, cycle: int, chronicle: Chronicle
+) -> tuple[tuple[int, Withdrawal], ...]:
+    return tuple(
+        (when, each)
+        for when, each in chronicle.withdrawals()
+        if each.belief == belief and when <= cycle
+    )
 
 
 def _others(found: Explanation, state: BeliefState, proof: _Proof) -> Iterator[Explanation]:

@@ -10,11 +10,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from icarus_lite.inference.explaining.attempts import nearest_attempt
-from icarus_lite.inference.explaining.conjunctions import Literal
 from icarus_lite.inference.explaining.diagnosis import nearest_beliefs
 from icarus_lite.inference.explaining.fitting import fit
 from icarus_lite.inference.facts import Bindings, FactStore
 from icarus_lite.inference.matching import Evaluator
+from icarus_lite.inference.supports import Literal
 from icarus_lite.language.syntax import Atom, Call, ConceptClause, Condition, SkillClause
 from icarus_lite.symbols import Belief
 

@@ -6,7 +6,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from icarus_lite.language.syntax import Atom, ConceptClause, Constant, Term, Variable
+from icarus_lite.language.syntax import (
+    Atom,
+    Call,
+    ConceptClause,
+    Condition,
+    Constant,
+    Expression,
+    Term,
+    Variable,
+)
 from icarus_lite.symbols import Action, Belief, Value
 
 
@@ -42,6 +51,9 @@ class Assertion:
 
 Support: TypeAlias = Derivation | Assertion
 
+Literal: TypeAlias = Condition | Call
+"""One condition or test of a conjunction."""
+
 
 def bind_pattern(atom: Atom, bindings: Mapping[str, Value]) -> Atom:
     """Give a pattern with its bound variables replaced; free ones stay, to be read as "any"."""
@@ -55,3 +67,22 @@ def bind_pattern(atom: Atom, bindings: Mapping[str, Value]) -> Atom:
     return Atom(
         atom.predicate, args, tuple((name, bound(t)) for name, t in atom.attributes), atom.span
     )
+
+
+def bind_literal(literal: Literal, bindings: Mapping[str, Value]) -> Literal:
+    """Fill values into a condition or test; free variables stay."""
+    if isinstance(literal, Call):
+        return _bind_call(literal, bindings)
+    return Condition(bind_pattern(literal.atom, bindings), literal.negated, literal.span)
+
+
+def _bind_call(call: Call, bindings: Mapping[str, Value]) -> Call:
+    return Call(call.function, tuple(_bind(each, bindings) for each in call.args), call.span)
+
+
+def _bind(expression: Expression, bindings: Mapping[str, Value]) -> Expression:
+    if isinstance(expression, Call):
+        return _bind_call(expression, bindings)
+    if isinstance(expression, Variable) and expression.name in bindings:
+        return Constant(bindings[expression.name], expression.span)
+    return expression

@@ -6,8 +6,8 @@ from collections.abc import Collection
 
 from icarus_lite.language.checking.report import Report
 from icarus_lite.language.diagnostics import Diagnostic
-from icarus_lite.language.reading.explanations import listing
 from icarus_lite.language.syntax import Domain
+from icarus_lite.language.wording import listing
 
 
 def check_commands(domain: Domain, offered: Collection[str]) -> tuple[Diagnostic, ...]:

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import functools
 import re
-import unicodedata
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
@@ -57,7 +56,7 @@ CODES: Mapping[str, str] = MappingProxyType(
         "ICR037": "An older construct has no counterpart and is refused.",
         "ICR039": "The supertype of a percept type is unknown, leads back to it, or too far up.",
         "ICR040": "Nothing uses this name (only told on request).",
-        "ICR041": "A concept can never be true, or a skill never start.",
+        "ICR041": "A concept can never be true, a skill never start, a contradiction never hold.",
         "ICR042": "An effect speaks of what only perception can change.",
         "ICR043": "The detach action of an attachment never undoes it.",
         "ICR044": "A test compares what can never be compared, such as a symbol with a number.",
@@ -66,6 +65,7 @@ CODES: Mapping[str, str] = MappingProxyType(
         "ICR047": "A word is taken for a name, though something else must be meant.",
         "ICR048": "An agent is unknown.",
         "ICR049": "An agent has nothing to do, or a request is made to nobody.",
+        "ICR050": "A contradiction speaks of what does not persist.",
         "ICR070": "A fact of :init cannot be given, or serves nothing.",
     }
 )
@@ -220,6 +220,8 @@ def _line_starts(text: str) -> tuple[int, ...]:
 
 def _cells(line: str) -> list[tuple[str, int]]:
     """Give what is shown for each character, with the number of columns it takes."""
+    import unicodedata  # noqa: PLC0415 - most runs show no line of a text
+
     cells: list[tuple[str, int]] = []
     column = 0
     for character in line:

@@ -5,7 +5,6 @@ Domains may use Python functions besides, given by name. What they return is che
 
 from __future__ import annotations
 
-import inspect
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -176,6 +175,8 @@ def function_table(functions: PythonFunctions | None = None) -> Mapping[str, Fun
 
 
 def _python_function(name: str, implementation: Callable[..., Value | bool]) -> Function:
+    import inspect  # noqa: PLC0415 - it takes long to import, and few domains use such functions
+
     least, most = _python_arity(implementation)
     text = (inspect.getdoc(implementation) or "A Python function.").partition("\n")[0]
     return Function(name, least, most, Kind.ANY, Kind.ANY, text, implementation)
@@ -183,6 +184,8 @@ def _python_function(name: str, implementation: Callable[..., Value | bool]) -> 
 
 def _python_arity(implementation: Callable[..., Value | bool]) -> tuple[int, int | None]:
     """Read off a Python function how many positional arguments it takes."""
+    import inspect  # noqa: PLC0415 - as above
+
     try:
         parameters = inspect.signature(implementation).parameters.values()
     except (TypeError, ValueError):  # some built-in functions do not say

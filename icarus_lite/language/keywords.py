@@ -89,6 +89,12 @@ FORMS: Mapping[str, Keyword] = _table(
         Content.CLAUSES,
         "Which action attaches which object to what, and which action undoes it.",
     ),
+    Keyword(
+        "contradictions",
+        Content.CLAUSES,
+        "What ends a belief that would persist: each clause says what its head cannot go together "
+        "with for long.",
+    ),
     Keyword("agents", Content.AGENTS, "Who else works here, and may be asked to do something."),
     Keyword("task", Content.TERMS, "A named goal, and the robot that is to reach it."),
     _GOALS,
@@ -170,6 +176,11 @@ FIELDS: Mapping[str, Keyword] = _table(
     Keyword(":until", Content.SKILLS, "The action that detaches again."),
     Keyword(":child", Content.TERMS, "The argument that moves with its parent while attached."),
     Keyword(":parent", Content.TERMS, "The argument that the child moves with."),
+    Keyword(
+        ":cycles",
+        Content.TERMS,
+        "For how many cycles in a row the conditions must hold; 1 if nothing is said.",
+    ),
     Keyword(":is", Content.SUPERTYPE, "The percept type of which this one is a special case."),
     Keyword(":robot", Content.TERMS, "The robot that the task is for."),
     Keyword(":agents", Content.AGENTS, "The other agents that take part in the task."),

@@ -227,6 +227,24 @@ class AttachmentRule:
 
 
 @dataclass(frozen=True, slots=True)
+class Contradiction:
+    """What ends a belief that would persist: `((holding ?h ?o) :elements (…) :cycles 3)`.
+
+    Args:
+        head: The beliefs that are withdrawn; it binds variables, as a positive element does.
+        elements: What must be perceived and believed for that, or with `not` must not.
+        tests: Comparisons that must hold besides.
+        cycles: For how many cycles in a row, from 1.
+    """
+
+    head: Atom
+    elements: tuple[Condition, ...] = ()
+    tests: tuple[Call, ...] = ()
+    cycles: int = 1
+    span: Span = field(default=NOWHERE, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
 class Task:
     """A named goal for a robot: `(task 1.1 "title" :robot ur5 :goal (…))`.
 
@@ -352,4 +370,5 @@ class Domain:
     long_term_goals: tuple[LongTermGoal, ...] = ()
     breakpoints: tuple[Breakpoint, ...] = ()
     agents: tuple[str, ...] = ()
+    contradictions: tuple[Contradiction, ...] = ()
     source: Source = field(default=Source("<text>", ""), compare=False)

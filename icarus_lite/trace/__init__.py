@@ -14,11 +14,14 @@ from icarus_lite.trace.ground_text import parse_action, parse_belief
 from icarus_lite.trace.reader import Trace, inputs_of, read_trace, stream_trace
 from icarus_lite.trace.record import TraceWriter, cycle_record, ensure_writable, header
 from icarus_lite.trace.recording import Instant, Recording
-from icarus_lite.trace.replaying import Divergence, Replay, replay
+from icarus_lite.trace.replaying import LOST, Divergence, Replay, replay
+from icarus_lite.trace.resuming import RESUMED, resumed_agent
 from icarus_lite.trace.serving import serves
 from icarus_lite.trace.telling import Episode, Story, tell
 
 __all__ = [
+    "LOST",
+    "RESUMED",
     "Comparison",
     "Divergence",
     "Episode",
@@ -45,6 +48,7 @@ __all__ = [
     "read_frames",
     "read_trace",
     "replay",
+    "resumed_agent",
     "serves",
     "stream_trace",
     "tell",

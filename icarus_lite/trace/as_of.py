@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from icarus_lite.inference import Chronicle, Period
+from icarus_lite.inference import Chronicle, Period, Withdrawal
 from icarus_lite.language.syntax import Atom
 from icarus_lite.symbols import Belief, Outcome
 
@@ -60,6 +60,10 @@ class ChronicleAsOf(Chronicle):
     def gone(self, cycle: int) -> frozenset[str]:
         """Give the names of the objects that were perceived until just before a cycle."""
         return self._whole.gone(cycle) if cycle <= self.cycle else frozenset()
+
+    def withdrawals(self) -> Iterator[tuple[int, Withdrawal]]:
+        """Give all that had been withdrawn, with the cycles in which it was, earliest first."""
+        return (each for each in self._whole.withdrawals() if each[0] <= self.cycle)
 
     def last_perceived(self, name: str) -> int | None:
         """Give the last cycle in which an object was perceived; None if it is, or never was."""

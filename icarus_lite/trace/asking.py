@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import groupby
 
 from icarus_lite.errors import FrameError
-from icarus_lite.inference import Period, match, percept_facts, what_ended
+from icarus_lite.inference import Period, Withdrawal, match, percept_facts, what_ended
 from icarus_lite.language.fragments import parse_conditions
 from icarus_lite.language.percept_types import lineages
 from icarus_lite.language.syntax import Atom, Condition, Constant
@@ -73,6 +73,7 @@ class Comparison:
         vanished: Objects perceived in the first alone.
         changed: Attributes of objects that are perceived in both.
         actions: What was reported of actions after the first, up to the second.
+        withdrawn: What was withdrawn in these cycles, with the cycle.
     """
 
     first: int
@@ -83,6 +84,7 @@ class Comparison:
     vanished: tuple[Percept, ...]
     changed: tuple[Changed, ...]
     actions: tuple[tuple[int, str], ...]
+    withdrawn: tuple[tuple[int, Withdrawal], ...] = ()
 
     def __str__(self) -> str:
         return "\n".join(self.lines())
@@ -90,7 +92,9 @@ class Comparison:
     def lines(self) -> Iterator[str]:
         """Give its text, a line at a time."""
         yield f"from cycle {self.first} to cycle {self.second}"
-        yield from (f"  cycle {cycle}: {report}" for cycle, report in self.actions)
+        told = [*self.actions, *((cycle, str(each)) for cycle, each in self.withdrawn)]
+        told.sort(key=lambda each: each[0])
+        yield from (f"  cycle {cycle}: {text}" for cycle, text in told)
         yield from (f"  - {belief}" for belief in self.removed)
         yield from (f"  + {belief}" for belief in self.added)
         yield from (f"  no longer perceived: {percept}" for percept in self.vanished)
@@ -107,10 +111,16 @@ class Comparison:
 
     def as_document(self) -> dict[str, object]:
         """Give it as plain data."""
+        withdrawn = [
+            {"cycle": cycle, "belief": str(each.belief)}
+            | {"because": list(each.because), "cycles": each.cycles}
+            for cycle, each in self.withdrawn
+        ]
         return {
             "from": self.first,
             "to": self.second,
             "actions": [{"cycle": cycle, "report": report} for cycle, report in self.actions],
+            **({"withdrawn": withdrawn} if withdrawn else {}),
             "added": list(map(str, self.added)),
             "removed": list(map(str, self.removed)),
             "appeared": list(map(str, self.appeared)),
@@ -179,6 +189,7 @@ def compare(first: Instant, second: Instant, recording: Recording) -> Comparison
         tuple(percept for key, percept in before.items() if key not in after),
         tuple(_changed(before, after)),
         tuple(_reported(first.cycle, second.cycle, recording)),
+        tuple(_withdrawn(first.cycle, second.cycle, recording)),
     )
 
 
@@ -201,6 +212,14 @@ def _reported(first: int, second: int, recording: Recording) -> Iterator[tuple[i
         if outcome.status is not Status.RUNNING:
             reason = f": {outcome.reason}" if outcome.reason else ""
             yield cycle, f"{outcome.action} {outcome.status}{reason}"
+
+
+def _withdrawn(first: int, second: int, recording: Recording) -> Iterator[tuple[int, Withdrawal]]:
+    """Give what was withdrawn after the earlier of two cycles, up to the later one."""
+    low, high = min(first, second), max(first, second)
+    for cycle, each in recording.chronicle().withdrawals():
+        if low < cycle <= high:
+            yield cycle, each
 
 
 def _perceived(pattern: Atom, recording: Recording) -> Iterator[Times]:

@@ -13,7 +13,7 @@ from icarus_lite._version import __version__
 from icarus_lite.agent import Decision
 from icarus_lite.errors import TraceError
 from icarus_lite.execution import GoalChange, Request, SkillPath
-from icarus_lite.inference import Assertion, Support
+from icarus_lite.inference import Assertion, BeliefState, Support
 from icarus_lite.language.syntax import Atom, Domain
 from icarus_lite.symbols import Outcome, Percept
 from icarus_lite.trace.plans import plan_row
@@ -81,6 +81,7 @@ def cycle_record(
         ],
         "removed": [str(belief) for belief in decision.removed],
         "asserted": list(_asserted(decision)),
+        **_judged(decision.state),
         "goals": [{"goal": str(g.goal), "satisfied": g.satisfied} for g in decision.goals],
         "path": [str(step.action) for step in decision.path],
         "plan": None if decision.plan is None else plan_row(decision.plan),
@@ -126,6 +127,26 @@ def _asserted(decision: Decision) -> Iterator[dict[str, object]]:
             if belief.attributes:
                 row["attributes"] = dict(belief.attributes)
             yield row
+
+
+def _judged(state: BeliefState) -> dict[str, object]:
+    """Give what was withdrawn, and what is in doubt; nothing where there is neither.
+
+    The doubts go on from here, should the run be resumed.
+    """
+    rows: dict[str, object] = {}
+    if state.withdrawn:
+        rows["withdrawn"] = [
+            {"belief": str(each.belief), "because": list(each.because), "cycles": each.cycles}
+            for each in state.withdrawn
+        ]
+    if state.doubts:
+        rows["doubts"] = [
+            {"belief": str(each.belief), "rule": each.rule}
+            | {"cycles": each.cycles, "limit": each.limit}
+            for each in state.doubts
+        ]
+    return rows
 
 
 def _told(change: GoalChange) -> dict[str, object]:
@@ -200,25 +221,45 @@ def ensure_writable(path: str | Path) -> None:
         raise TraceError(f"cannot be written: {error.strerror}", path=str(path)) from error
 
 
+def _drop_broken_line(path: Path) -> None:
+    """Cut a file after its last line that ends and can be read; a whole one gets its end."""
+    with path.open("r+b") as file:
+        data = file.read()
+        end = data.rfind(b"\n") + 1
+        last = data[end:]
+        if not last:
+            return
+        try:
+            json.loads(last)
+        except ValueError:
+            file.truncate(end)
+        else:
+            file.write(b"\n")
+
+
 class TraceWriter:
     """Appends lines to a trace file; each is flushed before the next cycle begins.
 
     Args:
-        path: The file; one that exists is replaced, its folder is made if it is missing.
-        first: The header.
+        path: The file; its folder is made if it is missing.
+        first: The header, of a file that is begun: one that exists is replaced. None to go on with
+            a trace; what was cut off of its last line is dropped.
 
     Raises:
         TraceError: the file cannot be written.
     """
 
-    def __init__(self, path: str | Path, first: Mapping[str, object]) -> None:
+    def __init__(self, path: str | Path, first: Mapping[str, object] | None) -> None:
         self.path = Path(path)
         ensure_writable(path)
         try:
-            self._file = self.path.open("w", encoding="utf-8")
+            if first is None:
+                _drop_broken_line(self.path)
+            self._file = self.path.open("a" if first is None else "w", encoding="utf-8")
         except OSError as error:
             raise TraceError(f"cannot be written: {error.strerror}", path=str(path)) from error
-        self.write(first)
+        if first is not None:
+            self.write(first)
 
     def write(self, record: Mapping[str, object]) -> None:
         """Append one line and flush it to the operating system.

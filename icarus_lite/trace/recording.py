@@ -22,13 +22,16 @@ from icarus_lite.inference import (
     BeliefState,
     Chronicle,
     Context,
+    Doubt,
     Explanation,
     Functions,
     Hierarchy,
     InferenceEngine,
+    Judgement,
     Link,
     Memory,
     WhyNot,
+    Withdrawal,
     explain,
     why_not,
 )
@@ -53,6 +56,7 @@ class _Delta:
     asserted: tuple[tuple[Belief, Assertion], ...]
     outcomes: tuple[Outcome, ...]
     present: tuple[str, ...]
+    withdrawn: tuple[Withdrawal, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -236,7 +240,11 @@ class Recording:
         whole = place // _STRIDE
         kept = self._kept[whole].after(self._deltas[whole * _STRIDE : place + 1])
         engine, hierarchy = self.engine, Hierarchy(kept.links)
-        memory = engine.recall(cycle, percepts, kept.asserted, hierarchy, kept.known, line.notes)
+        doubts = (Doubt(d.rule, self._belief(d.belief), d.cycles, d.limit) for d in line.doubts)
+        judgement = Judgement(tuple(doubts), self._deltas[place].withdrawn)
+        memory = engine.recall(
+            cycle, percepts, kept.asserted, hierarchy, kept.known, line.notes, judgement
+        )
         chronicle = ChronicleAsOf(
             self.chronicle(), cycle, lambda name: self._last_perceived(place, name)
         )
@@ -246,17 +254,29 @@ class Recording:
     def chronicle(self) -> Chronicle:
         """Give the record of what was believed when, over the whole run."""
         for place in range(self._recorded, len(self._cycles)):
-            delta = self._deltas[place]
-            self._chronicle.record(
-                self._cycles[place], delta.added, delta.removed, delta.outcomes, delta.present
-            )
+            self._record(self._chronicle, place)
         self._recorded = len(self._cycles)
         return self._chronicle
+
+    def chronicle_until(self, cycle: int) -> Chronicle:
+        """Give a record of its own, to be gone on with, of what was believed up to a cycle.
+
+        Raises:
+            TraceError: the run has no such cycle.
+        """
+        chronicle = Chronicle()
+        for place in range(self.place(cycle) + 1):
+            self._record(chronicle, place)
+        return chronicle
 
     def changes(self, cycle: int) -> tuple[tuple[Belief, ...], tuple[Belief, ...]]:
         """Give the beliefs that a cycle added and removed. Raises TraceError if there is none."""
         delta = self._deltas[self.place(cycle)]
         return delta.added, delta.removed
+
+    def withdrawn(self, cycle: int) -> tuple[Withdrawal, ...]:
+        """Give what was withdrawn in a cycle, and why. Raises TraceError if there is none."""
+        return self._deltas[self.place(cycle)].withdrawn
 
     def percepts(self) -> Iterator[tuple[int, tuple[Percept, ...]]]:
         """Give what was perceived, cycle by cycle."""
@@ -268,6 +288,17 @@ class Recording:
         for cycle, delta in zip(self._cycles, self._deltas, strict=True):
             if first <= cycle <= last:
                 yield from ((cycle, outcome) for outcome in delta.outcomes)
+
+    def _record(self, chronicle: Chronicle, place: int) -> None:
+        delta = self._deltas[place]
+        chronicle.record(
+            self._cycles[place],
+            delta.added,
+            delta.removed,
+            delta.outcomes,
+            delta.present,
+            delta.withdrawn,
+        )
 
     def _last_perceived(self, place: int, name: str) -> int | None:
         """Give the last cycle before one in which an object was perceived; None if it is then."""
@@ -310,6 +341,10 @@ class Recording:
             asserted,
             tuple(map(outcome_of, line.outcomes)),
             present,
+            tuple(
+                Withdrawal(self._belief(row.belief), row.because, row.cycles)
+                for row in line.withdrawn
+            ),
         )
 
     def _belief(self, text: str) -> Belief:

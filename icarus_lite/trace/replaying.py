@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
-from contextlib import suppress
 from dataclasses import dataclass
+from typing import Final
 
-from icarus_lite.agent import Agent
-from icarus_lite.errors import FrameError, TraceError
 from icarus_lite.inference import Functions
-from icarus_lite.language.fragments import parse_atom
 from icarus_lite.trace.reader import inputs_of
 from icarus_lite.trace.record import cycle_record
 from icarus_lite.trace.recording import Recording
+from icarus_lite.trace.resuming import RESUMED, agent_of, resumed_agent, tell_goals
 
-_BELIEFS = frozenset({"added", "removed", "asserted"})
+LOST: Final = "lost"
+"""The key of a line that says why the arm was lost: what was decided then was not carried out."""
+
+_DECISION = frozenset({"decision", "path", "request"})
+_BELIEFS = frozenset({"added", "removed", "asserted", "withdrawn", "doubts"})
+_WHERE_NEEDED = ("withdrawn", "doubts")
+"""Keys that a line has only where there is something to say."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,26 +85,20 @@ def replay(recording: Recording, functions: Functions | None = None) -> Replay:
         DomainError: a goal in it does not parse.
         InferenceError: a test of the domain cannot be evaluated.
     """
-    header = recording.header
-    agent = Agent(
-        recording.domain,
-        _texts(header, "goals", recording.path),
-        intentions=_texts(header, "intentions", recording.path),
-        functions=functions,
-        given=[parse_atom(text) for text in _texts(header, "given", recording.path)],
-        others=_texts(header, "others", recording.path) if "others" in header else None,
-        long_term=header.get("long_term") is not False,
-    )
+    agent = agent_of(recording, functions)
     beliefs: Divergence | None = None
     decisions: Divergence | None = None
     for cycle in recording.cycles:
         recorded = recording.record(cycle)
         percepts, outcomes = inputs_of(recorded)
-        _tell(agent, recorded)
+        if recorded.get(RESUMED):
+            agent = resumed_agent(recording, functions, before=cycle)
+        tell_goals(agent, recorded)
         decision = agent.cycle(percepts, outcomes)
         replayed = json.loads(json.dumps(cycle_record(decision, percepts, outcomes)))
-        for key, value in replayed.items():
-            if recorded.get(key) == value:
+        unsaid = {key: None for key in _WHERE_NEEDED if key in recorded}
+        for key, value in {**unsaid, **replayed}.items():
+            if recorded.get(key) == value or (key in _DECISION and LOST in recorded):
                 continue
             found = Divergence(cycle, key, recorded.get(key), value)
             if key in _BELIEFS:
@@ -111,26 +108,3 @@ def replay(recording: Recording, functions: Functions | None = None) -> Replay:
         if beliefs is not None:
             break  # from here on it is another run
     return Replay(len(recording), beliefs, decisions)
-
-
-def _tell(agent: Agent, recorded: Mapping[str, object]) -> None:
-    """Add and remove the goals that were added and removed before a cycle."""
-    told = recorded.get("told")
-    for row in told if isinstance(told, list) else ():
-        if "removed" in row:
-            with suppress(FrameError):  # of another domain text it may never have been a goal
-                agent.remove_goal(row["removed"])
-        else:
-            agent.add_goal(
-                f"({' '.join(row['goals'])})",
-                priority=row["priority"],
-                maintain=row["maintain"],
-                name=row["added"],
-            )
-
-
-def _texts(header: Mapping[str, object], key: str, path: str) -> tuple[str, ...]:
-    found = header.get(key)
-    if not isinstance(found, list) or not all(isinstance(each, str) for each in found):
-        raise TraceError(f'key "{key}" of the header is not a list of texts', path=path, line=1)
-    return tuple(found)

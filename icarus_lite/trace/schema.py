@@ -48,6 +48,23 @@ class AssertedRow(msgspec.Struct, frozen=True):
     attributes: dict[str, Value] = {}
 
 
+class WithdrawnRow(msgspec.Struct, frozen=True):
+    """A belief that was withdrawn in this cycle, and what contradicted it."""
+
+    belief: str
+    because: tuple[str, ...]
+    cycles: int = 1
+
+
+class DoubtRow(msgspec.Struct, frozen=True):
+    """A belief that was in doubt after this cycle: see `Doubt`."""
+
+    belief: str
+    rule: int
+    cycles: int
+    limit: int
+
+
 class ChangeLine(msgspec.Struct, frozen=True):
     """What a cycle changed."""
 
@@ -57,12 +74,14 @@ class ChangeLine(msgspec.Struct, frozen=True):
     removed: tuple[str, ...]
     asserted: tuple[AssertedRow, ...]
     outcomes: tuple[OutcomeRow, ...]
+    withdrawn: tuple[WithdrawnRow, ...] = ()
 
 
 class InputLine(msgspec.Struct, frozen=True):
-    """What entered a cycle, and what was noted in it."""
+    """What entered a cycle, and what was noted and doubted in it."""
 
     cycle: int
     percepts: tuple[PerceptRow, ...]
     outcomes: tuple[OutcomeRow, ...]
     notes: tuple[str, ...] = ()
+    doubts: tuple[DoubtRow, ...] = ()

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import groupby, zip_longest
 
-from icarus_lite.inference import ATTACHED, Period
+from icarus_lite.inference import ATTACHED, Period, Withdrawal
 from icarus_lite.symbols import Status
 from icarus_lite.trace.recording import Recording
 from icarus_lite.trace.serving import serves
@@ -62,6 +62,7 @@ class Story:
         episodes: The actions, in order.
         standstills: When nothing led on, and why.
         hidden: When an object was not seen, and what was believed of its place meanwhile.
+        withdrawn: What was believed and withdrawn, for something contradicts it, and when.
         ending: How it ended.
     """
 
@@ -70,6 +71,7 @@ class Story:
     standstills: tuple[tuple[Period, str], ...]
     hidden: tuple[str, ...]
     ending: str
+    withdrawn: tuple[tuple[int, Withdrawal], ...] = ()
 
     def __str__(self) -> str:
         return "\n".join(self.lines())
@@ -95,11 +97,12 @@ class Story:
         yield self.ending
 
     def divergences(self) -> Iterator[str]:
-        """Say what failed or stood still, and what was done next, in the order of the cycles."""
+        """Say what failed, stood still or was withdrawn, and what was done next, by cycles."""
         told: list[tuple[int, str]] = [
             (period.first, f"Cycle {_span(period)}: nothing led on: {reason}.")
             for period, reason in self.standstills
         ]
+        told += [(cycle, f"Cycle {cycle}: {each}.") for cycle, each in self.withdrawn]
         for episode, following in zip_longest(self.episodes, self.episodes[1:]):
             if episode.status == "failed":
                 next_step = "nothing more was started"
@@ -149,6 +152,7 @@ def tell(recording: Recording) -> Story:
         tuple(_merged(found.stood)),
         tuple(_hidden(recording)),
         _ending(recording, found.last),
+        tuple(recording.chronicle().withdrawals()),
     )
 
 

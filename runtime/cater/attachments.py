@@ -131,11 +131,12 @@ def _that_attaches(domain: Domain) -> Domain:
 
     They follow from the attachment rules and from skills with `attached` among their effects.
     Where there is no such skill, nothing else is needed; where there is one, its conditions may
-    rest on any concept, and all is kept.
+    rest on any concept, and all is kept. Contradictions are left out: nothing is perceived here
+    that could speak against an attachment.
     """
     effects: Sequence[str] = [
         effect.atom.predicate for skill in domain.skills for effect in skill.effects
     ]
     if ATTACHED in effects:
-        return domain
-    return replace(domain, concepts=(), skills=())
+        return replace(domain, contradictions=())
+    return replace(domain, concepts=(), skills=(), contradictions=())

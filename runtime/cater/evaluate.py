@@ -9,7 +9,6 @@ from importlib.resources import files
 from pathlib import Path
 
 from aapa.errors import DatasetError
-from aapa.lacater.models import models_named
 from aapa.lacater.reading import Dataset
 from icarus_lite import load_domain
 from runtime.cater.evaluation import Job, VideoResult
@@ -40,7 +39,7 @@ class How:
 
 
 def evaluate(job: Job, how: How, progress: Progress, note: Callable[[str], None]) -> Report:
-    """Run the models on every video of a data set.
+    """Run the models on every video of a data set, and make the table.
 
     With more than one process it starts Python anew in each, so that a script calls it under
     `if __name__ == "__main__":`.
@@ -57,8 +56,35 @@ def evaluate(job: Job, how: How, progress: Progress, note: Callable[[str], None]
         DatasetError: Not a single video could be evaluated.
         UsageError: The file of results so far, or the cluster, cannot be used.
     """
+    results = evaluated_videos(job, how, progress, note)
+    report = report_of(job, results)
+    if not report.videos:
+        raise DatasetError(
+            f"not one of {len(results)} videos can be evaluated; the first: "
+            f"{next(iter(report.skipped.values()))}",
+            path=str(job.root),
+        )
+    return report
+
+
+def evaluated_videos(
+    job: Job, how: How, progress: Progress, note: Callable[[str], None]
+) -> list[VideoResult]:
+    """Run the models on every video of a data set; see `evaluate`.
+
+    Args:
+        job: Data set, domain, models and perception.
+        how: Where it runs, and where it is kept meanwhile.
+        progress: Told of each batch of videos.
+        note: Told in words of what the person should know.
+
+    Raises:
+        AnchoringError: There is no such data set or model, or a model failed.
+        DomainError: The domain cannot be loaded.
+        UsageError: The file of results so far, or the cluster, cannot be used.
+    """
     load_domain(job.domain)
-    models_named(job.models)
+    job.followers()
     videos = Dataset(job.root).videos
     kept = _progress_file(job, how, note)
     done = {} if kept is None else {v: r for v, r in kept.done.items() if v in set(videos)}
@@ -83,14 +109,7 @@ def evaluate(job: Job, how: How, progress: Progress, note: Callable[[str], None]
     finally:
         if kept is not None:
             kept.close(finished=finished)
-    report = report_of(job, results)
-    if not report.videos:
-        raise DatasetError(
-            f"not one of {len(videos)} videos can be evaluated; the first: "
-            f"{next(iter(report.skipped.values()))}",
-            path=str(job.root),
-        )
-    return report
+    return results
 
 
 def cater_domain() -> Path:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from importlib.resources import files
 from pathlib import Path
 
@@ -22,11 +22,13 @@ from aapa.lacater.layout import (
     scene_path,
 )
 from aapa.lacater.metric import TASKS, VideoScore
+from aapa.lacater.models import Network
 from icarus_lite import load_domain
 from runtime.cater.evaluation import Job, VideoResult
+from runtime.cater.sureness import Sureness
 from runtime.errors import UsageError
 
-_FORMAT = 1
+_FORMAT = 2
 _PACKAGES = ("aapa", "icarus_lite", "runtime.cater")
 
 
@@ -71,6 +73,8 @@ class ProgressFile:
             "skipped": result.skipped,
             "scores": [_score_entry(score) for score in result.scores],
             "exact_scores": [_score_entry(score) for score in result.exact_scores],
+            "seconds": [round(seconds, 6) for seconds in result.seconds],
+            "sureness": [_sureness_entry(sureness) for sureness in result.sureness],
         }
         return json.dumps(entry)
 
@@ -102,12 +106,16 @@ def job_digest(job: Job) -> str:
     digest = hashlib.sha256()
     described = [str(job.root.resolve()), job.perception, *job.models]
     digest.update(json.dumps(described).encode())
+    for model in job.followers():
+        if isinstance(model, Network):
+            digest.update(model.file.read_bytes())
     source = load_domain(job.domain).source
     for text in (source.text, *(included.text for included in source.included)):
         digest.update(text.encode())
     for package in _PACKAGES:
-        for path in sorted(Path(str(files(package))).rglob("*.py")):
-            digest.update(path.read_bytes())
+        for pattern in ("*.py", "*.npz"):
+            for path in sorted(Path(str(files(package))).rglob(pattern)):
+                digest.update(path.read_bytes())
     for path in sorted(frame_lists_folder(job.root).glob("*.txt")):
         digest.update(_stamp(path).encode())
     return digest.hexdigest()
@@ -135,18 +143,33 @@ def _stamp(path: Path) -> str:
 
 
 def _score_entry(score: VideoScore) -> list[list[float | None]]:
-    return [
-        [None if math.isnan(column[task]) else column[task] for task in TASKS]
-        for column in (score.miou, score.ml2)
-    ]
+    return [_column_entry(score.miou), _column_entry(score.ml2)]
 
 
 def _score(entry: object) -> VideoScore:
-    miou, ml2 = (
-        {task: math.nan if v is None else float(v) for task, v in zip(TASKS, row, strict=True)}
-        for row in entry  # type: ignore[attr-defined]
-    )
+    miou, ml2 = map(_column, entry)  # type: ignore[call-overload]
     return VideoScore(miou, ml2)
+
+
+def _sureness_entry(sureness: Sureness | None) -> list[list[float | None]] | None:
+    if sureness is None:
+        return None
+    return [_column_entry(sureness.confidence), _column_entry(sureness.right)]
+
+
+def _sureness(entry: object) -> Sureness | None:
+    if entry is None:
+        return None
+    confidence, right = map(_column, entry)  # type: ignore[call-overload]
+    return Sureness(confidence, right)
+
+
+def _column_entry(column: Mapping[str, float]) -> list[float | None]:
+    return [None if math.isnan(column[task]) else column[task] for task in TASKS]
+
+
+def _column(entry: Sequence[float | None]) -> dict[str, float]:
+    return {task: math.nan if v is None else float(v) for task, v in zip(TASKS, entry, strict=True)}
 
 
 def _parsed(line: str) -> Mapping[str, object] | None:
@@ -164,6 +187,8 @@ def _result(entry: Mapping[str, object]) -> VideoResult | None:
             str(entry["skipped"]),
             tuple(map(_score, entry["scores"])),  # type: ignore[call-overload]
             tuple(map(_score, entry["exact_scores"])),  # type: ignore[call-overload]
+            tuple(map(float, entry["seconds"])),  # type: ignore[call-overload]
+            tuple(map(_sureness, entry["sureness"])),  # type: ignore[call-overload]
         )
     except (KeyError, TypeError, ValueError):
         return None

@@ -10,16 +10,21 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from types import TracebackType
-from typing import Final, Self
+from typing import Any, Final, Self
 
 import numpy as np
 
 from aapa import Camera, Detection
-from runtime.cell.camera import CameraParameters, Segmentation, camera_at, segment
+from runtime.cell.acts import PersonParameters
+from runtime.cell.arrangement import PlacedPart
+from runtime.cell.camera import CameraParameters, Eye, Segmentation
+from runtime.cell.contact import Contact
 from runtime.cell.detector import DetectorParameters, SegmentationDetector
 from runtime.cell.layout import LayoutParameters, random_layout
+from runtime.cell.mishaps import Fate, Mishaps
+from runtime.cell.person import Person
 from runtime.cell.scene import Scene
-from runtime.cell.world import HandParameters, PlacedPart, World
+from runtime.cell.world import HandParameters, World
 from runtime.errors import UsageError
 from runtime.kinematics import MODELS, ArmModel, Joints, Matrix, forward, inverse, nearest
 from runtime.parts import PartModel, load_parts
@@ -42,19 +47,25 @@ class CellParameters:
         hand: How forgiving gripping and seating are.
         camera: Optics and mount.
         detector: Thresholds and errors.
+        mishaps: What goes wrong with parts and fingers, and how often.
+        person: How the person at the table behaves.
     """
 
     layout: LayoutParameters = field(default_factory=LayoutParameters)
     hand: HandParameters = field(default_factory=HandParameters)
     camera: CameraParameters = field(default_factory=CameraParameters)
     detector: DetectorParameters = field(default_factory=DetectorParameters)
+    mishaps: Mishaps = field(default_factory=Mishaps)
+    person: PersonParameters = field(default_factory=PersonParameters)
 
 
 class Truth:
     """What is really where. For tests, for judging results, and for the simulated person."""
 
-    def __init__(self, world: World) -> None:
+    def __init__(self, world: World, person: Person) -> None:
         self._world = world
+        self.person = person
+        """Who else is at the table, and what they do."""
 
     @property
     def parts(self) -> Mapping[str, PlacedPart]:
@@ -113,15 +124,22 @@ class Cell:
         self._tcp[2, 3] = TCP_M
         self._look_joints = _look_joints(self._arm, self._tcp)
         layout = random_layout(parts or load_parts(), seed, self._parameters.layout)
-        self._world = World(layout.parts, layout.fixture, self._parameters.hand)
+        self._world = World(
+            layout.parts,
+            layout.fixture,
+            self._parameters.hand,
+            Fate(seed, self._parameters.mishaps),
+        )
         camera = self._parameters.camera
         self._scene = Scene(
             self._arm, layout, self._tcp, camera.mount_matrix, camera.vertical_view_rad
         )
+        self._eye = Eye(self._scene, self._arm, camera)
         self._detector = SegmentationDetector(seed, self._parameters.detector)
+        self._person = Person(self._world, seed, self._parameters.person)
         self._joints = self._look_joints
         self._frame = 0
-        self._seen: tuple[tuple[Joints, int, float], Segmentation] | None = None
+        self._seen: tuple[tuple[object, ...], Segmentation] | None = None
 
     @property
     def arm(self) -> ArmModel:
@@ -141,7 +159,12 @@ class Cell:
     @property
     def truth(self) -> Truth:
         """What is really where: for tests and for judging, never for the loop."""
-        return Truth(self._world)
+        return Truth(self._world, self._person)
+
+    @property
+    def person(self) -> Person:
+        """The person at the other side of the table."""
+        return self._person
 
     @property
     def scene(self) -> Scene:
@@ -149,19 +172,50 @@ class Cell:
         self._arrange()
         return self._scene
 
-    def update(self, joints: Sequence[float], gripper_closed: bool) -> bool:  # noqa: FBT001
+    def update(
+        self,
+        joints: Sequence[float],
+        gripper_closed: bool,  # noqa: FBT001
+        force_n: float = 0.0,
+    ) -> bool:
         """Move the cell to what the arm measures of itself.
 
         Args:
             joints: Six measured angles, rad.
             gripper_closed: Whether the gripper's close output is on.
+            force_n: The vertical force measured at the tool, N, whatever its sign.
 
         Returns:
             Whether the gripper's sensor feels a part between the fingers.
         """
         q1, q2, q3, q4, q5, q6 = (float(angle) for angle in joints)
         self._joints = (q1, q2, q3, q4, q5, q6)
-        return self._world.step(forward(self._arm, self._joints) @ self._tcp, closed=gripper_closed)
+        tool = forward(self._arm, self._joints) @ self._tcp
+        return self._world.step(tool, closed=gripper_closed, force_n=abs(force_n))
+
+    def contact(self) -> Contact | None:
+        """Give what the held part could touch around here; None if it is far from everything.
+
+        As long as nothing has changed the same object is given.
+        """
+        return self._world.contact()
+
+    def snapshot(self) -> dict[str, object]:
+        """Write the cell down, ready for JSON: parts, hand, person. The same until it changes."""
+        return {"world": self._world.snapshot(), "person": self._person.snapshot()}
+
+    def restore(self, kept: Mapping[str, Any]) -> None:
+        """Set the cell up as it was written down; the arm and its gripper are told by `update`.
+
+        Raises:
+            UsageError: It was not written by a cell with these parts.
+        """
+        if not isinstance(kept.get("world"), Mapping) or not isinstance(
+            kept.get("person"), Mapping
+        ):
+            raise UsageError("This is no cell that was written down: it has no world or person.")
+        carried = self._world.restore(kept["world"])
+        self._person.restore(kept["person"], carried)
 
     def look(self) -> tuple[list[Detection], Camera]:
         """Take the next frame: what is detected in it, and the camera it was taken with."""
@@ -172,12 +226,15 @@ class Cell:
 
     def view(self) -> Segmentation:
         """Give what each pixel sees now, without taking a frame. For judging and for pictures."""
-        state = (self._joints, self._world.version, self._world.opening_m)
+        state = (self._joints, self._world.version, self._world.opening_m, self._person.place)
         if self._seen is None or self._seen[0] != state:
             self._arrange()
-            camera = camera_at(self._arm, self._joints, self._parameters.camera)
-            parts = self._world.parts.values()
-            self._seen = (state, segment(self._scene, camera, parts))
+            solids = [*self._world.parts.values()]
+            body = self._person.body
+            if body is not None:
+                solids.append(body.placed_hand())
+            seen = self._eye.look(self._joints, self._world.opening_m, solids)
+            self._seen = (state, seen)
         return self._seen[1]
 
     def close(self) -> None:
@@ -196,7 +253,8 @@ class Cell:
         self.close()
 
     def _arrange(self) -> None:
-        self._scene.move(self._joints, self._world.opening_m, self._world.parts.values())
+        parts = self._world.parts.values()
+        self._scene.move(self._joints, self._world.opening_m, parts, self._person.body)
 
 
 def _look_joints(arm: ArmModel, tcp: Matrix) -> Joints:

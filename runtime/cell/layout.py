@@ -9,7 +9,7 @@ from typing import Final
 
 import numpy as np
 
-from runtime.cell.world import FIXTURE, PlacedPart
+from runtime.cell.arrangement import FIXTURE, PlacedPart
 from runtime.errors import UsageError
 from runtime.kinematics import Matrix
 from runtime.parts import PartModel, Primitive

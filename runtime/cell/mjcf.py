@@ -10,12 +10,16 @@ import math
 from collections.abc import Iterable, Sequence
 from typing import Final
 
-from runtime.cell.world import PlacedPart
+from runtime.cell.arrangement import PlacedPart
+from runtime.cell.body import FORE_M, HAND, LIMBS, UPPER_M
 from runtime.kinematics import ArmModel, Matrix
-from runtime.parts import Primitive
+from runtime.parts import PartModel, Primitive
 
-GROUPS: Final = {"room": 0, "arm": 1, "hand": 2, "camera": 3, "part": 4}
+GROUPS: Final = {"room": 0, "arm": 1, "hand": 2, "camera": 3, "part": 4, "person": 5}
 """Geom groups. The camera's rays pass through its own housing and through the room."""
+
+AWAY: Final = (0.0, 0.0, 50.0)
+"""Where the person's bodies are while nobody is there: beyond every ray, m."""
 
 FINGER_M: Final = (0.011, 0.005, 0.034)
 """Half sizes of a finger: across, along the closing direction, along the tool axis, m."""
@@ -23,6 +27,9 @@ FINGER_M: Final = (0.011, 0.005, 0.034)
 _STEEL: Final = "0.80 0.82 0.84 1"
 _CAP: Final = "0.33 0.58 0.80 1"
 _DARK: Final = "0.13 0.14 0.16 1"
+_SLEEVE: Final = "0.24 0.36 0.47 1"
+_FACE: Final = "0.80 0.62 0.50 1"
+_HAIR: Final = "0.23 0.17 0.13 1"
 
 
 def cell_xml(
@@ -50,9 +57,11 @@ def cell_xml(
         f' xyaxes="{_numbers([*mount[:3, 0], *-mount[:3, 1]])}"/>'
     )
     bodies = "\n".join(
-        f'<body name="{part.name}" mocap="true">{_solids(part.model.primitives, "part")}</body>'
+        f'<body name="{part.name}" mocap="true">{_solids(part.model.primitives, "part")}'
+        f"{_marks(part.model)}</body>"
         for part in parts
     )
+    bodies += _person()
     return f"""<mujoco model="icarus-cell">
 <compiler angle="radian"/>
 <statistic center="0.3 0 0.2" extent="1"/>
@@ -164,6 +173,50 @@ def _hand(tcp_m: float, camera_xyz: Sequence[float]) -> str:
     )
 
 
+def _person() -> str:
+    """Give the person's bodies, to be put in their places by whoever moves the scene."""
+    torso = (
+        _capsule((0, 0.15, -0.02), (0, -0.15, -0.02), 0.075, "person", _SLEEVE)
+        + _capsule((0.02, 0.07, -0.10), (0.02, 0.07, -0.48), 0.115, "person", _SLEEVE)
+        + _capsule((0.02, -0.07, -0.10), (0.02, -0.07, -0.48), 0.115, "person", _SLEEVE)
+        + _capsule((-0.01, -0.23, -0.03), (-0.02, -0.26, -0.32), 0.047, "person", _SLEEVE)
+        + _capsule((0, 0, 0.02), (-0.01, 0, 0.12), 0.052, "person", _FACE)
+        + _capsule((-0.03, 0, 0.19), (-0.02, 0, 0.25), 0.085, "person", _FACE)
+        + _capsule((0.005, 0, 0.225), (0.005, 0, 0.275), 0.088, "person", _HAIR)
+    )
+    texts = (
+        torso,
+        _capsule((0, 0, 0), (0, 0, UPPER_M), 0.050, "person", _SLEEVE),
+        _capsule((0, 0, 0), (0, 0, FORE_M), 0.038, "person", _SLEEVE),
+        _solids(HAND.primitives, "person"),
+    )
+    return "".join(
+        f'\n<body name="{name}" mocap="true" pos="{_numbers(AWAY)}">{text}</body>'
+        for name, text in zip(LIMBS, texts, strict=True)
+    )
+
+
+def _marks(model: PartModel) -> str:
+    """Show on a screw how it is turned, for people only: rays and detectors see nothing of it."""
+    if all(seat.thread is None for seat in model.seats):
+        return ""
+    top, shank = model.size[2] / 2, model.primitives[0]
+    slot = _box((0, 0, top), (0.40 * model.size[0], 0.0022, 0.0006), "room", _DARK)
+    dot = _box((0.36 * model.size[0], 0, top), (0.0022, 0.0022, 0.0009), "room", "0.85 0.15 0.1 1")
+    low = shank.offset[2] - shank.size[2] / 2
+    ridges = "".join(
+        _cylinder(
+            (0, 0, low + 0.0010 + turn * 0.0030),
+            (0, 0, low + 0.0022 + turn * 0.0030),
+            shank.size[0] / 2 + 0.0005,
+            "room",
+            _DARK,
+        )
+        for turn in range(int(shank.size[2] / 0.0030))
+    )
+    return slot + dot + ridges
+
+
 def _solids(primitives: Iterable[Primitive], group: str) -> str:
     texts = []
     for solid in primitives:
@@ -190,8 +243,14 @@ def _cylinder(
     )
 
 
-def _capsule(start: Sequence[float], end: Sequence[float], radius: float) -> str:
-    return _cylinder(start, end, radius, shape="capsule")
+def _capsule(
+    start: Sequence[float],
+    end: Sequence[float],
+    radius: float,
+    group: str = "arm",
+    rgba: str = _STEEL,
+) -> str:
+    return _cylinder(start, end, radius, group, rgba, shape="capsule")
 
 
 def _cap(start: Sequence[float], end: Sequence[float], radius: float) -> str:

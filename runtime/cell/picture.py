@@ -28,6 +28,7 @@ View: TypeAlias = Literal["overview", "wrist"]
 _LOOK_AT: Final = (0.28, -0.03, 0.26)
 _DISTANCE_M: Final = 1.5
 _AZIMUTH: Final = 133.0
+_AZIMUTH_WITH_PERSON: Final = 52.0  # past the person's other shoulder, not through their head
 _ELEVATION: Final = -25.0
 _BOX_COLOUR: Final = (90, 255, 120)
 
@@ -68,7 +69,9 @@ class Picture:
         if view == "overview":
             camera = self._mujoco.MjvCamera()
             camera.lookat[:] = _LOOK_AT
-            camera.distance, camera.azimuth, camera.elevation = _DISTANCE_M, _AZIMUTH, _ELEVATION
+            camera.distance, camera.elevation = _DISTANCE_M, _ELEVATION
+            alone = self._cell.person.body is None
+            camera.azimuth = _AZIMUTH if alone else _AZIMUTH_WITH_PERSON
             self._renderer.update_scene(scene.data, camera, option)
         else:
             option.geomgroup[GROUPS["camera"]] = 0  # the lens is inside its own housing

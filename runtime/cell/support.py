@@ -1,14 +1,15 @@
-"""What a part comes to rest on when it is let go: height maps instead of contact dynamics.
+"""What a part comes to rest on when it is lowered: height fields instead of contact dynamics.
 
-The cell is quasi-static. A released part stays upright and falls straight down until the first
-column of its underside meets something. Columns are sampled every few millimetres, which treats
-stepped shafts, open boxes and lids alike. Tipping over and bouncing are left out.
+The cell is quasi-static. Parts stand upright, and a part that comes down straight stops where the
+lower face of one of its solids meets the upper face of another's. Whether two faces lie over one
+another is decided exactly, so a field may be asked for at any spacing. Tipping over and bouncing
+are left out.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
-from functools import lru_cache
 from typing import Final
 
 import numpy as np
@@ -19,9 +20,7 @@ from runtime.parts import PartModel, Primitive
 
 Floats = NDArray[np.float64]
 
-STEP_M: Final = 0.003
-"""Distance between the columns of a height map, m."""
-
+_TOUCH_M: Final = 1e-6  # faces that overlap by less than this pass one another
 _PRESS_M: Final = 0.006  # a surface this far above an underside still counts as below it
 
 
@@ -35,56 +34,105 @@ def fall(
         pose: (4, 4), its centre in the base frame, upright.
         others: Name, model and upright pose of everything it may land on.
     """
-    columns = underside(model) @ pose[:3, :3].T + pose[:3, 3]
-    stopped_by: str | None = None
-    depth = float(columns[:, 2].min())
+    here, height = pose[:2, 3].reshape(1, 2), float(pose[2, 3])
+    rest, stopped_by = model.size[2] / 2, None
     for name, other, other_pose in others:
-        tops = _tops(other, other_pose, columns)
-        gap = float(np.min(columns[:, 2] - tops, initial=np.inf))
-        if gap < depth:
-            depth, stopped_by = gap, name
-    return depth, stopped_by
+        most = height + _PRESS_M
+        [meets] = resting_heights(model, heading(pose), here, other, other_pose, most)
+        if meets > rest:
+            rest, stopped_by = float(meets), name
+    return height - rest, stopped_by
 
 
-@lru_cache(maxsize=64)
-def underside(model: PartModel) -> Floats:
-    """Give the lowest point of the part in each column, (n, 3), relative to its centre."""
-    half_x, half_y = model.size[0] / 2, model.size[1] / 2
-    x, y = np.meshgrid(_ticks(half_x), _ticks(half_y))
-    flat = np.column_stack([x.ravel(), y.ravel()])
-    lowest = np.full(len(flat), np.inf)
-    for solid in model.primitives:
-        inside = covers(solid, flat)
-        lowest[inside] = np.minimum(lowest[inside], solid.offset[2] - solid.size[2] / 2)
-    solid_columns = np.isfinite(lowest)
-    return np.column_stack([flat[solid_columns], lowest[solid_columns]])
+def resting_heights(
+    model: PartModel,
+    yaw: float,
+    places: Floats,
+    other: PartModel,
+    other_pose: Matrix,
+    most: float = math.inf,
+) -> Floats:
+    """Give how high a part's centre stands on another part, wherever it is lowered onto it.
+
+    Args:
+        model: The part that is lowered.
+        yaw: How it is turned about the vertical, rad.
+        places: (n, 2) x and y of its centre, m.
+        other: What is below.
+        other_pose: (4, 4), upright.
+        most: Surfaces that would hold it up higher than this do not count, m.
+
+    Returns:
+        (n,) heights in m, -inf where it passes the other part by.
+    """
+    heights = np.full(len(places), -np.inf)
+    other_yaw = heading(other_pose)
+    own, theirs = _rotation(yaw), _rotation(other_yaw)
+    middle, reach = places.mean(axis=0), float(np.abs(np.ptp(places, axis=0)).max())
+    for above in model.primitives:
+        beside = own @ np.asarray(above.offset[:2])
+        for below in other.primitives:
+            meets = (
+                float(other_pose[2, 3])
+                + (below.offset[2] + below.size[2] / 2)
+                - (above.offset[2] - above.size[2] / 2)
+            )
+            if meets > most:
+                continue
+            centre = other_pose[:2, 3] + theirs @ np.asarray(below.offset[:2])
+            if math.dist(middle + beside, centre) > reach + _radius(above) + _radius(below):
+                continue
+            over = _overlap(above, yaw, below, other_yaw, places + beside - centre)
+            np.maximum(heights, np.where(over, meets, -np.inf), out=heights)
+    return heights
 
 
-def covers(solid: Primitive, points: Floats) -> NDArray[np.bool_]:
-    """Tell which points, (n, 2) m relative to the part's centre, lie over or under a solid."""
-    dx = np.abs(points[:, 0] - solid.offset[0])
-    dy = np.abs(points[:, 1] - solid.offset[1])
-    if solid.shape == "cylinder":
-        within: NDArray[np.bool_] = dx**2 + dy**2 <= (solid.size[0] / 2) ** 2
+def heading(pose: Matrix) -> float:
+    """Give how far an upright pose is turned about the vertical, rad."""
+    return math.atan2(float(pose[1, 0]), float(pose[0, 0]))
+
+
+def _overlap(
+    one: Primitive, one_yaw: float, other: Primitive, other_yaw: float, away: Floats
+) -> NDArray[np.bool_]:
+    """Tell where two footprints overlap, the first's centre (n, 2) m away from the second's."""
+    within: NDArray[np.bool_]
+    if one.shape == other.shape == "cylinder":
+        least = (one.size[0] + other.size[0]) / 2 - _TOUCH_M
+        within = np.einsum("ij,ij->i", away, away) < least**2
+    elif one.shape == "cylinder":
+        within = _disc_over_box(one.size[0] / 2, other, away @ _rotation(other_yaw))
+    elif other.shape == "cylinder":
+        within = _disc_over_box(other.size[0] / 2, one, away @ _rotation(one_yaw))
     else:
-        within = (dx <= solid.size[0] / 2) & (dy <= solid.size[1] / 2)
+        within = _boxes(one, one_yaw, other, other_yaw, away)
     return within
 
 
-def _tops(model: PartModel, pose: Matrix, columns: Floats) -> Floats:
-    """Give the highest surface of a part below each column, -inf where there is none."""
-    local = (columns - pose[:3, 3]) @ pose[:3, :3]
-    tops = np.full(len(columns), -np.inf)
-    near = np.abs(local[:, :2]).max(axis=1) <= max(model.size[0], model.size[1])
-    if not near.any():
-        return tops
-    for solid in model.primitives:
-        top = solid.offset[2] + solid.size[2] / 2
-        under = covers(solid, local) & (local[:, 2] >= top - _PRESS_M)
-        tops[under] = np.maximum(tops[under], pose[2, 3] + top)
-    return tops
+def _disc_over_box(radius: float, box: Primitive, away: Floats) -> NDArray[np.bool_]:
+    """Tell where a disc lies over a box; `away` is in the box's own axes."""
+    outside = np.maximum(np.abs(away) - np.asarray(box.size[:2]) / 2, 0.0)
+    within: NDArray[np.bool_] = np.einsum("ij,ij->i", outside, outside) < (radius - _TOUCH_M) ** 2
+    return within
 
 
-def _ticks(half: float) -> Floats:
-    count = max(2, round(2 * half / STEP_M) + 1)
-    return np.linspace(-half + 1e-6, half - 1e-6, count)
+def _boxes(
+    one: Primitive, one_yaw: float, other: Primitive, other_yaw: float, away: Floats
+) -> NDArray[np.bool_]:
+    """Tell where two turned rectangles overlap: no axis of either separates them."""
+    axes = np.concatenate([_rotation(one_yaw).T, _rotation(other_yaw).T])
+    reach = np.zeros(4)
+    for solid, yaw in ((one, one_yaw), (other, other_yaw)):
+        reach += np.abs(axes @ _rotation(yaw)) @ np.asarray(solid.size[:2]) / 2
+    within: NDArray[np.bool_] = (np.abs(away @ axes.T) < reach - _TOUCH_M).all(axis=1)
+    return within
+
+
+def _radius(solid: Primitive) -> float:
+    """Give the radius of the circle around a footprint, m."""
+    return math.hypot(solid.size[0], solid.size[1]) / 2
+
+
+def _rotation(yaw: float) -> Floats:
+    c, s = math.cos(yaw), math.sin(yaw)
+    return np.array([[c, -s], [s, c]])

@@ -1,28 +1,34 @@
-"""Where the parts are, and what the hand does to them: gripping, carrying, seating, dropping.
+"""What the hand does to the parts: gripping, carrying, pressing, seating, dropping.
 
-Quasi-static: nothing has mass or speed. A part is either held by the hand, or it stands on the
-table, on another part, or in a seat of another part, and then moves rigidly with that part.
+Quasi-static: nothing has mass or speed. How hard the hand presses is told from outside, by the
+arm's force sensor, or follows from how far the tool is below what the held part touches.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
-from types import MappingProxyType
-from typing import Final
+from dataclasses import dataclass
+from typing import Any, Final
 
 import numpy as np
 
-from runtime.cell.support import fall
+from runtime.cell.arrangement import FIXTURE, Arrangement, PlacedPart
+from runtime.cell.contact import Contact, Feeling
+from runtime.cell.insertion import Insertion
+from runtime.cell.keeping import HeldPart, parts_from_json, parts_to_json
+from runtime.cell.mishaps import Fate
+from runtime.cell.seating import Opening
+from runtime.cell.support import fall, heading
 from runtime.errors import UsageError
 from runtime.kinematics import Matrix
-from runtime.parts import GRIPPER_OPENING_M, PartModel, Seat, Vector
-
-FIXTURE: Final = "fixture"
-"""The name of the plate the case stands on. It cannot be moved and is not a part."""
+from runtime.parts import GRIPPER_OPENING_M
 
 _UPRIGHT: Final = math.cos(math.radians(20))
+_PRESSES: Final = 2  # looks in a row at which a part is pressed too hard before it gives way
+_SHOVED_M: Final = 0.008
+_FROM_ABOVE_M: Final = 0.2
+_FREE_M: Final = 0.001  # a seat is taken when something stands higher in it than this
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,41 +38,22 @@ class HandParameters:
     Args:
         reach_across_m: A part's axis may be this far off the plane of the fingers.
         reach_height_m: The tool centre point may be this far off the part's grasp height.
-        chamfer_m: A part let go within this distance of a seat's axis slides into the seat.
-        press_m: How far below its seated height a part may be let go and still be seated.
+        aside_m: A part let go within this distance of a seat's axis may be in the seat.
+        press_m: How far below its seated height it may be let go and still be seated.
+        drop_m: How far above it.
+        press_share: The share of the seat's force with which it must have been pressed.
         turn_rad: How far a part that is not round may be turned and still fit.
+        hold_n: Pressed harder than this, a part that only stands in the fixture moves aside.
     """
 
     reach_across_m: float = 0.012
     reach_height_m: float = 0.015
-    chamfer_m: float = 0.008
-    press_m: float = 0.010
+    aside_m: float = 0.0015
+    press_m: float = 0.004
+    drop_m: float = 0.002
+    press_share: float = 0.6
     turn_rad: float = math.radians(15)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class PlacedPart:
-    """One part and where it truly is.
-
-    Args:
-        name: Unique, such as "bearing-2".
-        model: Its type's drawing.
-        pose: (4, 4), its centre in the base frame.
-        parent: What it stands on or sits in: a part, the fixture, or None for table and hand.
-        seated: Whether it sits in one of its parent's seats.
-    """
-
-    name: str
-    model: PartModel
-    pose: Matrix
-    parent: str | None = None
-    seated: bool = False
-
-    @property
-    def position(self) -> Vector:
-        """Its centre in the base frame, m."""
-        x, y, z = self.pose[:3, 3].tolist()
-        return x, y, z
+    hold_n: float = 20.0
 
 
 class World:
@@ -76,24 +63,39 @@ class World:
         parts: The parts in their first places.
         fixture: The plate under the case; it can be landed on but not moved.
         hand: Tolerances.
+        fate: What goes wrong; None is nothing.
     """
 
     def __init__(
-        self, parts: Iterable[PlacedPart], fixture: PlacedPart, hand: HandParameters | None = None
+        self,
+        parts: Iterable[PlacedPart],
+        fixture: PlacedPart,
+        hand: HandParameters | None = None,
+        fate: Fate | None = None,
     ) -> None:
-        self._parts = {part.name: part for part in parts}
-        self._fixture = fixture
         self._hand = hand or HandParameters()
+        self._fate = fate or Fate()
+        self.arrangement = Arrangement(parts, fixture, self._hand.turn_rad)
+        self._insertion = Insertion(self.arrangement, self._fate)
+        self._feeling = Feeling(self.arrangement, self._insertion)
         self._held: str | None = None
         self._grasp: Matrix = np.eye(4)
         self._closed = False
-        self.version = 0
-        """Grows whenever a part has moved."""
+        self._slips_after_m: float | None = None
+        self._pressed_looks = 0
+        self._resumes: HeldPart | None = None
+        self.tool: Matrix | None = None
+        """(4, 4), the tool centre point at the last step."""
 
     @property
     def parts(self) -> Mapping[str, PlacedPart]:
         """The parts by name, always in the same order."""
-        return MappingProxyType(self._parts)
+        return self.arrangement.parts
+
+    @property
+    def version(self) -> int:
+        """Grows whenever a part has moved."""
+        return self.arrangement.version
 
     @property
     def held(self) -> str | None:
@@ -104,17 +106,36 @@ class World:
     def opening_m(self) -> float:
         """How far apart the fingers are now."""
         if self._held is not None:
-            return self._parts[self._held].model.grip_width_m
+            return self.parts[self._held].model.grip_width_m
         return 0.0 if self._closed else GRIPPER_OPENING_M
 
-    def step(self, tcp: Matrix, *, closed: bool) -> bool:
+    def contact(self) -> Contact | None:
+        """Give what the held part could touch around here; None if it is far from everything."""
+        if self._held is None or self.tool is None or not _upright(self.tool):
+            return None
+        return self._feeling.contact(self._held, self.tool)
+
+    def step(self, tcp: Matrix, *, closed: bool, force_n: float = 0.0) -> bool:
         """Bring the hand to a pose, (4, 4), with its close output on or off.
+
+        Args:
+            tcp: The tool centre point.
+            closed: Whether the close output is on.
+            force_n: How hard the tool presses down, as the arm measures it, N.
 
         Returns:
             Whether the hand's sensor feels a part between the fingers.
         """
+        before, self.tool = self.tool, tcp
+        self._feeling.follow(tcp)
+        if self._resumes is not None:
+            resumed, self._resumes = self._resumes, None
+            self.arrangement.move(resumed.name, tcp @ self._grasp)
+            self._insertion.take_hold(
+                resumed.name, heading(tcp), resumed.receiver, resumed.turned_rad
+            )
         if self._held is not None:
-            self._move(self._held, tcp @ self._grasp)
+            self._carry(self._held, before, force_n, opens=self._closed and not closed)
         if closed and not self._closed:
             self._grip(tcp)
         elif self._closed and not closed:
@@ -124,12 +145,13 @@ class World:
 
     def place(self, name: str, x: float, y: float) -> None:
         """Put a part down at x, y, with all it carries, letting it fall from above."""
-        part = self._part(name)
+        self.arrangement.part(name)
         pose = np.eye(4)
         pose[:3, 3] = x, y, 1.0
-        self._let_go(part.name)
-        self._move(name, pose)
-        self._drop(name)
+        self._lose(name)
+        self.arrangement.let_go(name)
+        self.arrangement.move(name, pose)
+        self.arrangement.drop(name)
 
     def insert(self, name: str, into: str) -> None:
         """Put a part into its seat in another part, as a person would.
@@ -137,31 +159,73 @@ class World:
         Raises:
             UsageError: No such part, or it has no seat there.
         """
-        part, receiver = self._part(name), self._part(into)
+        part, receiver = self.arrangement.part(name), self.arrangement.part(into)
         for seat in part.model.seats:
             if seat.into == receiver.model.type:
-                self._let_go(name)
-                self._sit(part, receiver, seat)
+                self._lose(name)
+                self.arrangement.sit(name, into, seat)
                 return
         raise UsageError(f"A {part.model.type} has no seat in a {receiver.model.type}.")
+
+    def is_seat_free(self, name: str, into: str) -> bool:
+        """Tell whether a part could be put into its seat in another from above."""
+        turned = heading(self.parts[into].pose)
+        return any(
+            opening.receiver == into and self._is_free(name, opening)
+            for opening in self.arrangement.openings(name, turned)
+        )
+
+    def snapshot(self) -> dict[str, object]:
+        """Give where everything is, ready for JSON. It stays the same while a part is carried."""
+        held, turning = None, self._insertion.turning
+        if self._held is not None:
+            receiver = None if turning is None else turning.receiver
+            turned = 0.0 if turning is None else turning.turned_rad
+            held = HeldPart(self._held, self._grasp, receiver, turned)
+        kept = parts_to_json(self.arrangement, held)
+        return {**kept, "tried": self._insertion.snapshot(), "drawn": self._fate.counts}
+
+    def restore(self, kept: Mapping[str, Any]) -> tuple[str, ...]:
+        """Put everything where it was; give the parts that a person had in hand.
+
+        Raises:
+            UsageError: It was not written by a world with these parts.
+        """
+        parts, held, carried = parts_from_json(kept, self.parts)
+        self.arrangement.restore(parts, kept.get("pinned", ()))
+        self._insertion.restore(kept.get("tried", ()))
+        self._fate.go_on_from(kept.get("drawn", {}))
+        self._feeling.forget()
+        self._slips_after_m = None
+        self._held, self._closed, self._resumes = None, held is not None, held
+        if held is not None:
+            self.arrangement.take(held.name)
+            self._held, self._grasp = held.name, held.grasp
+        return carried
 
     def _grip(self, tcp: Matrix) -> None:
         reachable = [
             (abs(across), name)
-            for name, part in self._parts.items()
+            for name, part in self.parts.items()
             if (across := self._between_fingers(part, tcp)) is not None
         ]
         if not reachable:
             return
         name = min(reachable)[1]
-        self._grasp = np.linalg.inv(tcp) @ self._parts[name].pose
+        was = self.parts[name]
+        self._grasp = np.linalg.inv(tcp) @ was.pose
         self._grasp[1, 3] = 0.0  # the fingers push it to the middle as they close
-        self._parts[name] = replace(self._parts[name], parent=None, seated=False)
+        self.arrangement.take(name)
         self._held = name
-        self._move(name, tcp @ self._grasp)
+        self._slips_after_m = self._fate.slip_after_m()
+        self._pressed_looks = 0
+        self.arrangement.move(name, tcp @ self._grasp)
+        self._insertion.take_hold(name, heading(tcp), was.parent, was.turned_rad)
 
     def _between_fingers(self, part: PlacedPart, tcp: Matrix) -> float | None:
         """Give how far the part is off the fingers' plane, None if they would miss it."""
+        if part.name in self.arrangement.in_hands:
+            return None
         across, along, below = np.linalg.solve(tcp, part.pose)[:3, 3].tolist()
         fits = (
             part.model.grippable
@@ -172,107 +236,150 @@ class World:
         )
         return across if fits else None
 
+    def _carry(self, name: str, before: Matrix | None, force_n: float, *, opens: bool) -> None:
+        tool = self.tool
+        assert tool is not None, "a step brings the tool somewhere"
+        self.arrangement.move(name, tool @ self._grasp)
+        if not _upright(tool):
+            return
+        down_n = self._pressed_n()
+        stays = self._insertion.follow(name, tool, max(force_n, down_n or 0.0))
+        if stays:
+            self._slip_off(name)
+            return
+        # The measured force may come from the walls of a hole as well.
+        self._press(name, force_n if down_n is None else down_n, opens=opens)
+        if before is not None and self._slips_after_m is not None:
+            self._slips_after_m -= float(np.linalg.norm(tool[:3, 3] - before[:3, 3]))
+            if self._slips_after_m < 0 and self._insertion.turning is None:
+                self._lose(name)
+                self._settle(name)
+
+    def _pressed_n(self) -> float | None:
+        """Give how hard the part is pressed down, from how far the tool is below its contact.
+
+        None where nothing is known of what it could touch.
+        """
+        assert self.tool is not None, "a step brings the tool somewhere"
+        contact = self.contact()
+        if contact is None:
+            return None
+        x, y, z = self.tool[:3, 3].tolist()
+        if contact.thread is None:
+            return contact.press_n(x, y, z)
+        turning = self._insertion.turning
+        assert turning is not None, "a contact has a thread only while the part is in it"
+        turned = turning.turned_rad / (2 * math.pi)
+        height = contact.thread.top_z - contact.thread.pitch_m * turned
+        deep: float = height - z
+        return max(0.0, deep * contact.stiffness_n_m)
+
+    def _press(self, name: str, force_n: float, *, opens: bool) -> None:
+        """Move what is pressed too hard, and not held by a person, aside."""
+        hard = force_n > self._hand.hold_n
+        self._pressed_looks = self._pressed_looks + 1 if hard else 0
+        if not hard or (self._pressed_looks < _PRESSES and not opens):
+            return
+        for opening in self._insertion.openings(name):
+            x, y, z = self.parts[name].position
+            if opening.beside_m(x, y) > opening.mouth_m or z > opening.rim_m:
+                continue
+            base = (opening.receiver, *self.arrangement.ancestors(opening.receiver))[-1]
+            if self.parts[base].parent != FIXTURE or base in self.arrangement.pinned:
+                continue
+            angle = self._fate.shove_rad()
+            pose = self.parts[base].pose.copy()
+            pose[:2, 3] += _SHOVED_M * np.array([math.cos(angle), math.sin(angle)])
+            self.arrangement.move(base, pose)
+            self._pressed_looks = 0
+            return
+
+    def _slip_off(self, name: str) -> None:
+        """Leave a part in its thread from which the hand was pulled away."""
+        turning = self._insertion.turning
+        assert turning is not None, "only a part in a thread stays behind"
+        self._leave_in_thread(name, turning.receiver, turning.turned_rad)
+        self._lose(name)
+
     def _release(self) -> None:
-        name, self._held = self._held, None
+        name = self._held
         if name is None:
             return
-        part = self._parts[name]
-        upright = np.eye(4)
-        upright[:3, :3] = _turn(_yaw(part.pose))
-        upright[:3, 3] = part.pose[:3, 3]
-        self._move(name, upright)
-        part = self._parts[name]
-        for receiver in self._others(name):
-            for seat in part.model.seats:
-                if seat.into == receiver.model.type and self._fits(part, receiver, seat):
-                    self._sit(part, receiver, seat)
-                    return
-        self._drop(name)
-
-    def _fits(self, part: PlacedPart, receiver: PlacedPart, seat: Seat) -> bool:
-        target = receiver.pose @ np.array([*seat.offset, 1.0])
-        dx, dy, fall_m = map(float, part.pose[:3, 3] - target[:3])
-        aside = math.hypot(dx, dy)
-        if aside > self._hand.chamfer_m or fall_m < -self._hand.press_m:
-            return False
-        turn = _yaw(part.pose) - _yaw(receiver.pose)
-        if not _round(part.model) and abs(math.remainder(turn, math.pi)) > self._hand.turn_rad:
-            return False
-        above = part.pose.copy()
-        above[:2, 3] = target[:2]
-        in_the_way = [
-            (other.name, other.model, other.pose)
-            for other in self._others(part.name)
-            if other.name != receiver.name and other.name not in self._ancestors(receiver.name)
-        ]
-        free, _ = fall(part.model, above, in_the_way)
-        return free >= fall_m - self._hand.press_m
-
-    def _sit(self, part: PlacedPart, receiver: PlacedPart, seat: Seat) -> None:
-        pose = receiver.pose.copy()
-        pose[:3, 3] = (receiver.pose @ np.array([*seat.offset, 1.0]))[:3]
-        self._parts[part.name] = replace(part, parent=receiver.name, seated=True)
-        self._move(part.name, pose)
-
-    def _drop(self, name: str) -> None:
-        part = self._parts[name]
-        below = [(other.name, other.model, other.pose) for other in self._others(name)]
-        below.append((FIXTURE, self._fixture.model, self._fixture.pose))
-        depth, support = fall(part.model, part.pose, below)
-        pose = part.pose.copy()
-        pose[2, 3] -= depth
-        self._parts[name] = replace(part, parent=support, seated=False)
-        self._move(name, pose)
-
-    def _move(self, name: str, pose: Matrix) -> None:
-        """Bring a part to a pose, and all that stands on it with it."""
-        part = self._parts[name]
-        if np.array_equal(part.pose, pose):
+        turning = self._insertion.turning
+        if turning is not None:
+            self._leave_in_thread(name, turning.receiver, turning.turned_rad)
+            self._lose(name)
             return
-        motion = pose @ np.linalg.inv(part.pose)
-        for other in self._parts.values():
-            if name in self._ancestors(other.name):
-                self._parts[other.name] = replace(other, pose=motion @ other.pose)
-        self._parts[name] = replace(part, pose=pose)
-        self.version += 1
+        seat = self._seat_of(name)
+        if seat is not None:
+            self.arrangement.sit(name, seat.receiver, seat.seat)
+        else:
+            self._settle(name)
+        self._lose(name)
 
-    def _let_go(self, name: str) -> None:
+    def _leave_in_thread(self, name: str, receiver: str, turned_rad: float) -> None:
+        into = self.parts[receiver].model.type
+        seat = next(seat for seat in self.parts[name].model.seats if seat.into == into)
+        self.arrangement.sit(name, receiver, seat, turned_rad)
+
+    def _seat_of(self, name: str) -> Opening | None:
+        """Give the seat in which the part is as it is let go; None if it is in none."""
+        self._set_upright(name)
+        x, y, z = self.parts[name].position
+        for opening in self._insertion.openings(name):
+            above = z - opening.centre[2]
+            if (
+                opening.seat.thread is None
+                and opening.beside_m(x, y) <= self._hand.aside_m
+                and -self._hand.press_m <= above <= self._hand.drop_m
+                and self._insertion.jam_m(name, opening) is None
+                and self._insertion.press_n >= self._hand.press_share * opening.seat.press_n
+                and self._is_free(name, opening)
+            ):
+                return opening
+        return None
+
+    def _is_free(self, name: str, opening: Opening) -> bool:
+        """Tell whether nothing but the receiver is in the way of a seat."""
+        part = self.parts[name]
+        above = part.pose.copy()
+        above[:3, 3] = *opening.centre[:2], opening.centre[2] + _FROM_ABOVE_M
+        near = {opening.receiver, *self.arrangement.ancestors(opening.receiver), FIXTURE}
+        others = self.arrangement.solids(name, near)
+        depth, _ = fall(part.model, above, others)
+        return float(above[2, 3]) - depth <= opening.centre[2] + _FREE_M
+
+    def _settle(self, name: str) -> None:
+        """Let a part go where it is not seated: it stays in the mouth of a seat, or it falls."""
+        self._set_upright(name)
+        x, y, z = self.parts[name].position
+        for mouth in self._insertion.mouths(name):
+            inside = mouth.beside_m(x, y) <= mouth.mouth_m and z < mouth.rim_m
+            if inside and self._is_free(name, mouth):
+                self.arrangement.stand(
+                    name, mouth.receiver, max(z, mouth.floor_m), mouth.centre[:2]
+                )
+                return
+        self.arrangement.drop(name)
+
+    def _set_upright(self, name: str) -> None:
+        part = self.parts[name]
+        pose = np.eye(4)
+        c, s = math.cos(heading(part.pose)), math.sin(heading(part.pose))
+        pose[:2, :2] = [[c, -s], [s, c]]
+        pose[:3, 3] = part.pose[:3, 3]
+        self.arrangement.move(name, pose)
+
+    def _lose(self, name: str) -> None:
+        """Note that the hand no longer holds a part."""
         if self._held == name:
             self._held = None
-
-    def _others(self, name: str) -> list[PlacedPart]:
-        """Give the parts that are neither this one, nor carried by it, nor in the hand."""
-        away = {name, self._held}
-        return [
-            other
-            for other in self._parts.values()
-            if other.name not in away and not away & self._ancestors(other.name)
-        ]
-
-    def _ancestors(self, name: str) -> set[str | None]:
-        found: set[str | None] = set()
-        above = self._parts[name].parent
-        while above is not None and above in self._parts:
-            found.add(above)
-            above = self._parts[above].parent
-        return found
-
-    def _part(self, name: str) -> PlacedPart:
-        if name not in self._parts:
-            raise UsageError(f"No part is called {name!r}; there are {', '.join(self._parts)}.")
-        return self._parts[name]
+            self._slips_after_m = None
+            self._insertion.release()
+            self._feeling.forget()
+            self.arrangement.let_go(name)
 
 
-def _round(model: PartModel) -> bool:
-    return all(
-        solid.shape == "cylinder" and solid.offset[:2] == (0.0, 0.0) for solid in model.primitives
-    )
-
-
-def _yaw(pose: Matrix) -> float:
-    return math.atan2(float(pose[1, 0]), float(pose[0, 0]))
-
-
-def _turn(yaw: float) -> Matrix:
-    c, s = math.cos(yaw), math.sin(yaw)
-    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+def _upright(tool: Matrix) -> bool:
+    """Tell whether a tool, (4, 4), points down closely enough to press on anything."""
+    return float(tool[2, 2]) <= -_UPRIGHT

@@ -6,47 +6,54 @@ standard error. With `--json`, standard output carries one JSON document and not
 
 from __future__ import annotations
 
+import atexit
+import gc
 import sys
 from typing import NoReturn
 
 import typer
 
 from icarus_lite import IcarusError
-from runtime.cli import (  # noqa: F401 - each adds its commands
-    cater,
-    cater_generate,
-    checking,
-    editing,
-    explain,
-    formatting,
-    inferring,
-    inspecting,
-    pddl,
-    planning,
-    repl,
-    running,
-    testing,
-    tracking,
-)
 from runtime.cli.app import BAD_INPUT, HOLDS, app
 from runtime.errors import RuntimeFault
+
+_ALLOCATIONS = 50_000
+"""After so many new objects Python looks for garbage. What is imported and read lasts as long as
+the process, so that to look after each seven hundred, as is usual, is a tenth of a short run."""
 
 
 def main() -> NoReturn:
     """Run the command line; whatever goes wrong is told in words, with status 2."""
-    from aapa import AnchoringError
-
+    gc.set_threshold(_ALLOCATIONS)
+    atexit.register(gc.freeze)  # as the process ends, nobody need look for garbage
     try:
         app()
-    except (IcarusError, RuntimeFault, AnchoringError) as error:
-        sys.stdout.flush()
-        typer.echo(str(error), err=True)
-        sys.exit(BAD_INPUT)
+    except (IcarusError, RuntimeFault) as error:
+        _tell(error)
+    except ValueError as error:
+        if not _is_told_by_the_eyes(error):
+            raise
+        _tell(error)
     except BrokenPipeError:
         # Whoever read our output has enough; there is nobody left to tell.
         sys.stderr.close()
         sys.exit(HOLDS)
     sys.exit(HOLDS)
+
+
+def _is_told_by_the_eyes(error: ValueError) -> bool:
+    """Tell whether an error is one of perception's, without importing it for the question."""
+    if "aapa" not in sys.modules:
+        return False
+    from aapa import AnchoringError
+
+    return isinstance(error, AnchoringError)
+
+
+def _tell(error: Exception) -> NoReturn:
+    sys.stdout.flush()
+    typer.echo(str(error), err=True)
+    sys.exit(BAD_INPUT)
 
 
 __all__ = ["app", "main"]

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Final, TextIO
 import typer
 
 from icarus_lite import __version__
+from runtime.cli.on_demand import CommandsOnDemand
 from runtime.errors import UsageError
 
 if TYPE_CHECKING:
@@ -26,6 +27,7 @@ BAD_INPUT: Final = 2
 
 app = typer.Typer(
     name="icarus",
+    cls=CommandsOnDemand,
     help="A cognitive-architecture rule engine with its own language, action-aware perceptual "
     "anchoring, and Universal Robots arms.",
     no_args_is_help=True,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -42,6 +43,12 @@ def evaluate(
     scheduler: Annotated[
         str | None, typer.Option(help="A Dask scheduler to run on, such as tcp://10.0.0.5:8786.")
     ] = None,
+    weights: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME=FILE", help="Weights of a network of your own, to be named in --models."
+        ),
+    ] = None,
     domain: Annotated[
         Path | None, typer.Option(help="Says which actions attach; cater.icr if left out.")
     ] = None,
@@ -70,12 +77,14 @@ def evaluate(
     if perception not in tuple(PerceptionKind):
         raise UsageError(f"--perception is {perception!r}; it has to be od or pp")
     names = tuple(dict.fromkeys(name.strip() for name in models.split(",") if name.strip()))
-    job = Job(folder, domain or cater_domain(), names, PerceptionKind(perception))
+    own = _weights(weights or ())
+    job = Job(folder, domain or cater_domain(), names, PerceptionKind(perception), own)
     how = How(jobs, scheduler, progress, fresh)
     with ProgressBar(Console(stderr=True)) as bar:
         report = evaluated(job, how, bar.show, bar.note)
     if as_json:
-        typer.echo(json.dumps(report.to_json(), ensure_ascii=False))
+        document = report.to_json() | {"videos_per_second": report.speeds_json()}
+        typer.echo(json.dumps(document, ensure_ascii=False))
         return
     # Wide enough for the table even where the width is not known, as in a pipe.
     console = Console() if sys.stdout.isatty() else Console(width=110)
@@ -83,3 +92,18 @@ def evaluate(
         console.print(table)
     for line in report.skipped_lines():
         console.print(line, highlight=False, soft_wrap=True, markup=False)
+
+
+def _weights(options: Sequence[str]) -> tuple[tuple[str, Path], ...]:
+    """Give the name and the file of each NAME=FILE."""
+    from runtime.errors import UsageError
+
+    found = {}
+    for option in options:
+        name, is_there, file = option.partition("=")
+        if not (is_there and name and file):
+            raise UsageError(f"--weights is {option!r}; it has to be NAME=FILE")
+        if name in found:
+            raise UsageError(f"--weights names {name} twice")
+        found[name] = Path(file)
+    return tuple(found.items())

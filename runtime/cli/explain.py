@@ -75,7 +75,7 @@ def explain_rule(
 
 
 def _unknown(domain: Domain, file: Path, concept: str) -> str:
-    from icarus_lite.language.reading.explanations import closest
+    from icarus_lite.language.wording import closest
 
     known = sorted({clause.head.predicate for clause in domain.concepts})
     if not known:

@@ -98,7 +98,7 @@ def _goals(domain: Domain, text: str) -> tuple[Condition, ...]:
     """Read a goal and see that the domain knows what it speaks of."""
     from icarus_lite.language.checking.vocabulary import vocabulary
     from icarus_lite.language.fragments import parse_conditions
-    from icarus_lite.language.reading.explanations import closest
+    from icarus_lite.language.wording import closest
 
     goals = parse_conditions(text)
     known = vocabulary(domain).predicates

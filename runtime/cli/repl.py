@@ -90,7 +90,8 @@ def _of_domain(file: Path, task: str | None, goal: str | None, frames: Path | No
     chosen = None if task is None else find_task(domain, task)
     init = () if chosen is None else chosen.init
     goals = chosen.goals if chosen is not None else (() if goal is None else (goal,))
-    agent = Agent(domain, goals, given=init)
+    others = None if chosen is None else chosen.agents
+    agent = Agent(domain, goals, given=init, others=others)
     run = TypedRun(agent, given_percepts(domain, init))
     if frames is not None:
         run.load(frames)
@@ -115,24 +116,24 @@ def _of_cell(file: Path, task: str | None, seed: int) -> Session:
         find_task,
         loop_at,
     )
-    from runtime.workplace import open_workplace
+    from runtime.workplace import Setting, open_workplace
 
     if task is None:
         raise UsageError("say which task to run in the cell: --task NAME")
     domain = load(file)
     chosen = find_task(domain, task)
     config = load_robot(chosen.robot or DEFAULT_ROBOT)
-    agent = Agent(domain, chosen.goals, given=chosen.init)
+    agent = Agent(domain, chosen.goals, given=chosen.init, others=chosen.agents)
     parameters = anchoring_parameters()
     with ExitStack() as stack:
         place = stack.enter_context(
-            open_workplace(config, load_parts(), seed=seed, clock=DEFAULT_CLOCK)
+            open_workplace(config, load_parts(), setting=Setting(seed=seed, clock=DEFAULT_CLOCK))
         )
         stack.callback(place.driver.stop)
         run = CellRun(
             agent,
             place.words,
-            lambda observer: loop_at(place, agent, config, parameters, RunOptions(), observer),
+            lambda observer: loop_at(place, agent, config, parameters, RunOptions(), [observer]),
             stack.pop_all().close,
         )
     recording = Recording(header(domain, agent.goals, given=chosen.init, task=task, seed=seed))

@@ -90,7 +90,7 @@ def start_state(domain: Domain, task: Task | None, frames: Path | None) -> Start
     if frames is not None:
         return Start(engine, _after_frames(engine, memory, frames), f"the last frame of {frames}")
     if task is not None and given:
-        memory = engine.step(memory, given_percepts(domain, given))
+        memory = engine.step_once(memory, given_percepts(domain, given))
         return Start(engine, memory, f"the facts that task {task.name} gives")
     if task is not None:
         example = _example(domain, task)
@@ -138,6 +138,8 @@ def _after_test(engine: InferenceEngine, test: DomainTest) -> Memory:
     from icarus_lite.inference import Memory, given_percepts
     from icarus_lite.symbols import Action, Outcome
 
+    if not test.actions and not test.then:
+        return engine.step_once(Memory(), given_percepts(engine.domain, test.percepts))
     memory, percepts = Memory(), test.percepts
     cycles: tuple[DomainTest | LaterCycle, ...] = (test, *test.then)
     for cycle in cycles:

@@ -7,12 +7,16 @@ import ipaddress
 import logging
 import math
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
 
 from runtime.controller.arm import HOME
 from runtime.controller.controller import Controller, Settings
+from runtime.controller.faults import load_faults
 from runtime.controller.ports import BANNER
-from runtime.errors import RuntimeFault
+from runtime.controller.versions import VERSIONS, version_for
+from runtime.errors import RuntimeFault, UsageError
 from runtime.kinematics import JOINT_LIMIT, MODELS, Joints
 
 
@@ -28,14 +32,11 @@ def main(argv: Sequence[str] | None = None) -> int:
         0 after an orderly end, 1 if the bench told it to die, 2 if it could not start; the
         reason is then on standard error.
     """
-    settings, log = _parse(argv)
+    given = _parser().parse_args(argv)
     try:
-        _start_log(log)
-    except OSError as error:
-        sys.stderr.write(f"the log {log} cannot be written: {error.strerror}; choose another\n")
-        return 2
-    try:
-        with Controller(settings) as controller:
+        settings = _settings(given)
+        _start_log(given.log)
+        with _journal(given.journal) as write, Controller(settings, write) as controller:
             controller.stop_on_signals()
             sys.stdout.write(f"ready {settings.model.name} {settings.address}\n")
             sys.stdout.flush()
@@ -45,7 +46,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         return 2
 
 
-def _parse(argv: Sequence[str] | None) -> tuple[Settings, str | None]:
+def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="python -m runtime.controller",
         description=f"A {BANNER} for the real ur-rtde client.",
@@ -71,17 +72,58 @@ def _parse(argv: Sequence[str] | None) -> tuple[Settings, str | None]:
         metavar="q1,…,q6",
         help="where the arm stands at first, rad",
     )
-    parser.add_argument("--log", metavar="FILE", help="write a log")
+    parser.add_argument(
+        "--version",
+        metavar="X.Y",
+        help="the PolyScope version to play ("
+        + ", ".join(f"{m} {v}" for m, v in VERSIONS.items())
+        + ")",
+    )
+    parser.add_argument("--faults", type=Path, metavar="FILE", help="what is to go wrong, as YAML")
+    parser.add_argument("--seed", type=int, default=0, help="of what the faults leave to chance")
+    parser.add_argument(
+        "--journal", type=Path, metavar="FILE", help="write what was witnessed, as JSON lines"
+    )
+    parser.add_argument("--log", type=Path, metavar="FILE", help="write a log")
     parser.add_argument("--parent", type=int, metavar="PID", help="end when this process has ended")
-    given = parser.parse_args(argv)
-    return (
-        Settings(MODELS[given.model], given.address, given.clock, given.joints, given.parent),
-        given.log,
+    return parser
+
+
+def _settings(given: argparse.Namespace) -> Settings:
+    """Give the settings the arguments ask for. Raises RuntimeFault for what cannot be."""
+    return Settings(
+        MODELS[given.model],
+        given.address,
+        given.clock,
+        given.joints,
+        given.parent,
+        version_for(given.model, given.version),
+        () if given.faults is None else load_faults(given.faults, given.seed),
     )
 
 
-def _start_log(path: str | None) -> None:
-    """Log to a file if there is one; what a person should look at also to standard error."""
+@contextmanager
+def _journal(path: Path | None) -> Iterator[Callable[[str], None] | None]:
+    """Open the journal's file, if there is one. Raises UsageError if it cannot be written."""
+    if path is None:
+        yield None
+        return
+    try:
+        file = path.open("w", encoding="utf-8", buffering=1)
+    except OSError as error:
+        raise UsageError(
+            f"the journal {path} cannot be written: {error.strerror}; choose another"
+        ) from error
+    with file:
+        yield lambda line: print(line, file=file)
+
+
+def _start_log(path: Path | None) -> None:
+    """Log to a file if there is one; what a person should look at also to standard error.
+
+    Raises:
+        UsageError: The file cannot be written.
+    """
     form = logging.Formatter(f"%(asctime)s {BANNER}: %(message)s")
     log = logging.getLogger("runtime.controller")
     log.propagate = False
@@ -89,11 +131,17 @@ def _start_log(path: str | None) -> None:
     warnings.setLevel(logging.WARNING)
     warnings.setFormatter(form)
     log.addHandler(warnings)
-    if path is not None:
+    if path is None:
+        return
+    try:
         record = logging.FileHandler(path, encoding="utf-8")
-        record.setFormatter(form)
-        log.addHandler(record)
-        log.setLevel(logging.INFO)
+    except OSError as error:
+        raise UsageError(
+            f"the log {path} cannot be written: {error.strerror}; choose another"
+        ) from error
+    record.setFormatter(form)
+    log.addHandler(record)
+    log.setLevel(logging.INFO)
 
 
 def _loopback(text: str) -> str:

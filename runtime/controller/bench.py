@@ -4,12 +4,19 @@ Each request is one JSON object on one line, and gets one line back: `{"ok": tru
 `{"ok": false, "error": "…"}`. Several keys may stand in one request.
 
 - `{"inputs": {"tool_digital_in_0": true}}` sets digital inputs, `{"analog_inputs": [0.5, 0]}`
-  the analog ones, as fractions of their range.
+  the analog ones, as fractions of their range; `{"outputs": {"tool_digital_out_0": true}}` sets
+  digital outputs, as if they had been left so by a program that ended.
+- `{"contact": {"origin": [x, y], "step_m": s, "heights": [[z, …], …], "stiffness_n_m": k,
+  "thread": null}}` is what the tool touches: see `runtime.controller.contact`; null for nothing.
 - `{"wrench": [fx, fy, fz, mx, my, mz]}` is what presses on the tool, N and Nm, base frame.
-- `{"fault": {…}}` with any of `protective_stop: true`, `emergency_stop: true|false` (pressed,
-  released), `kill_script: true`, `drop_rtde: true`, `silence: seconds` of wall time in which
-  nothing runs and nothing answers, `die: true`.
-- `{"query": "state"}` gives joints, TCP, safety, program, inputs and outputs.
+- `{"fault": {…}}` lets something go wrong at once, with any of `protective_stop: true`,
+  `emergency_stop: true|false` (pressed, released), `kill_script: true`, `drop_rtde: true`,
+  `drop_dashboard: true`, `silence: seconds` of wall time in which nothing runs and nothing
+  answers, `die: true`.
+- `{"faults": [{…}, …]}`, or `{"faults": {"schedule": […], "seed": n}}`, is what is to go wrong
+  later, in place of what was to: see `runtime.controller.faults`.
+- `{"query": "state"}` gives joints, TCP, force, safety, program, inputs and outputs;
+  `{"query": "journal"}` what the controller has witnessed: see `runtime.controller.journal`.
 """
 
 from __future__ import annotations
@@ -19,12 +26,15 @@ from collections.abc import Callable, Mapping
 from typing import Any, Final
 
 from runtime.controller.connections import Connection, ProtocolViolation
+from runtime.controller.contact import ContactError, parse_contact
 from runtime.controller.control_box import ControlBox
+from runtime.controller.fault_actions import FaultActions, FaultSchedule
+from runtime.controller.faults import parse_faults
 from runtime.controller.ports import BANNER
-from runtime.controller.signals import SignalError, parse_digital_input
+from runtime.controller.signals import SignalError, parse_digital
+from runtime.errors import ConfigError
 
-_LONGEST: Final = 65536
-_LONGEST_SILENCE_S: Final = 600.0
+_LONGEST: Final = 1 << 22  # the heights of a large contact
 _LARGEST: Final = 1e12
 
 
@@ -37,28 +47,27 @@ class BenchServer:
 
     Args:
         box: The control box on the bench.
-        drop_rtde: Cuts all RTDE connections.
+        actions: Lets things go wrong.
     """
 
-    def __init__(self, box: ControlBox, drop_rtde: Callable[[], None]) -> None:
+    def __init__(self, box: ControlBox, actions: FaultActions) -> None:
         self._box = box
-        self._drop_rtde = drop_rtde
-        self.silence_s = 0.0
-        self.dying = False
+        self._actions = actions
+        self.schedule = FaultSchedule((), box, actions.act)
+        """What is still to go wrong."""
         self._requests: dict[str, Callable[[Any], dict[str, Any]]] = {
             "inputs": self._inputs,
             "analog_inputs": self._analog_inputs,
+            "outputs": self._outputs,
+            "contact": self._contact,
             "wrench": self._wrench,
             "fault": self._fault,
+            "faults": self._schedule,
             "query": self._query,
         }
-        self._faults: dict[str, Callable[[Any], None]] = {
-            "protective_stop": self._protective_stop,
-            "emergency_stop": self._emergency_stop,
-            "kill_script": self._kill_script,
-            "drop_rtde": self._drop,
-            "silence": self._silence,
-            "die": self._die,
+        self._queries: dict[str, Callable[[], dict[str, Any]]] = {
+            "state": self._state,
+            "journal": lambda: {"journal": box.journal.to_json()},
         }
 
     def accept(self, connection: Connection) -> _BenchSession:
@@ -81,20 +90,32 @@ class BenchServer:
         try:
             for key, value in request.items():
                 result.update(self._requests[key](value))
-        except (BenchError, SignalError) as error:
+        except (BenchError, ContactError, SignalError) as error:
             return {"ok": False, "error": str(error)}
         return result
 
     def _inputs(self, levels: Any) -> dict[str, Any]:
         if not isinstance(levels, dict):
             raise BenchError('"inputs" takes an object, such as {"tool_digital_in_0": true}')
-        checked = [(parse_digital_input(name), _truth(name, on)) for name, on in levels.items()]
+        checked = [(parse_digital(name, "in"), _truth(name, on)) for name, on in levels.items()]
         for (group, index), on in checked:
             self._box.signals.set_input(group, index, on=on)
         return {}
 
+    def _outputs(self, levels: Any) -> dict[str, Any]:
+        if not isinstance(levels, dict):
+            raise BenchError('"outputs" takes an object, such as {"tool_digital_out_0": true}')
+        checked = [(parse_digital(name, "out"), _truth(name, on)) for name, on in levels.items()]
+        for (group, index), on in checked:
+            self._box.signals.set_output(group, index, on=on)
+        return {}
+
     def _analog_inputs(self, levels: Any) -> dict[str, Any]:
         self._box.signals.analog_inputs = _numbers("analog_inputs", levels, 2)
+        return {}
+
+    def _contact(self, contact: Any) -> dict[str, Any]:
+        self._box.arm.be_near(parse_contact(contact))
         return {}
 
     def _wrench(self, wrench: Any) -> dict[str, Any]:
@@ -103,8 +124,11 @@ class BenchServer:
         return {}
 
     def _query(self, what: Any) -> dict[str, Any]:
-        if what != "state":
-            raise BenchError(f'there is no query {what!r}; there is "state"')
+        if not isinstance(what, str) or what not in self._queries:
+            raise BenchError(f"there is no query {what!r:.80}; {_any_of(self._queries)}")
+        return self._queries[what]()
+
+    def _state(self) -> dict[str, Any]:
         box = self._box
         return {
             "controller": BANNER,
@@ -115,6 +139,8 @@ class BenchServer:
             "tcp": list(box.arm.tcp_pose),
             "tcp_offset": list(box.arm.tool.tcp),
             "payload_kg": box.arm.payload_kg,
+            "wrench": list(box.arm.wrench),
+            "force_mode": box.arm.force_mode is not None,
             "steady": box.arm.is_steady,
             "robot_mode": box.safety.robot_mode.name,
             "safety": box.safety.mode.name,
@@ -128,45 +154,62 @@ class BenchServer:
 
     def _fault(self, faults: Any) -> dict[str, Any]:
         if not isinstance(faults, dict) or not faults:
-            raise BenchError(f'"fault" takes an object; {_any_of(self._faults)}')
+            raise BenchError(f'"fault" takes an object; {_any_of(self._at_once)}')
         for name in faults:
-            if name not in self._faults:
-                raise BenchError(f"there is no fault '{name}'; {_any_of(self._faults)}")
+            if name not in self._at_once:
+                raise BenchError(f"there is no fault '{name}'; {_any_of(self._at_once)}")
         for name, value in faults.items():
-            self._faults[name](value)
+            self._at_once[name](value)
+        return {}
+
+    @property
+    def _at_once(self) -> Mapping[str, Callable[[Any], None]]:
+        return {
+            "protective_stop": self._protective_stop,
+            "emergency_stop": self._emergency_stop,
+            "kill_script": lambda on: self._now("kill_script", on),
+            "drop_rtde": lambda on: self._now("drop_rtde", on),
+            "drop_dashboard": lambda on: self._now("drop_dashboard", on),
+            "silence": self._silence,
+            "die": lambda on: self._now("die", on),
+        }
+
+    def _schedule(self, content: Any) -> dict[str, Any]:
+        try:
+            given = content if isinstance(content, dict) else {"schedule": content}
+            seed = int(_numbers("seed", [given.get("seed", 0)], 1)[0])
+            faults = parse_faults(given.get("schedule"), seed)
+        except ConfigError as error:
+            raise BenchError(str(error)) from error
+        self.schedule = FaultSchedule(faults, self._box, self._actions.act)
         return {}
 
     def _protective_stop(self, on: Any) -> None:
-        if _truth("protective_stop", on) and not self._box.protective_stop(
-            "asked for on the bench"
-        ):
+        box = self._box
+        if _truth("protective_stop", on) and not box.protective_stop("asked for on the bench"):
             raise BenchError(
-                f"the arm is stopped already: {self._box.safety.mode.name}, "
-                f"{self._box.safety.robot_mode.name}"
+                f"the arm is stopped already: {box.safety.mode.name}, {box.safety.robot_mode.name}"
             )
 
     def _emergency_stop(self, on: Any) -> None:
         if _truth("emergency_stop", on):
             self._box.emergency_stop()
         else:
-            self._box.safety.release_emergency_stop()
-
-    def _kill_script(self, on: Any) -> None:
-        if _truth("kill_script", on):
-            self._box.stop_program("killed from the bench")
-
-    def _drop(self, on: Any) -> None:
-        if _truth("drop_rtde", on):
-            self._drop_rtde()
+            self._box.release_emergency_stop()
 
     def _silence(self, seconds: Any) -> None:
-        (given,) = _numbers("silence", [seconds], 1)
-        if not 0 < given <= _LONGEST_SILENCE_S:
-            raise BenchError(f'"silence" takes seconds, above 0 and up to {_LONGEST_SILENCE_S:g}')
-        self.silence_s = given
+        self._do({"fault": "stall", "wall_s": seconds})
 
-    def _die(self, on: Any) -> None:
-        self.dying = self.dying or _truth("die", on)
+    def _now(self, kind: str, on: Any) -> None:
+        if _truth(kind, on):
+            self._do({"fault": kind})
+
+    def _do(self, entry: dict[str, Any]) -> None:
+        try:
+            (fault,) = parse_faults([{**entry, "when": {"time_s": 0}}])
+        except ConfigError as error:
+            raise BenchError(str(error)) from error
+        self._actions.act(fault)
 
 
 class _BenchSession:

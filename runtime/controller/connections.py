@@ -13,6 +13,7 @@ from runtime.controller.ports import BANNER, BUSY
 from runtime.errors import ControllerError
 
 _CHUNK: Final = 65536
+_MOST_CONNECTIONS: Final = 128
 _BACKLOG_LIMIT: Final = 1 << 20  # a client that reads nothing may not fill our memory
 
 
@@ -125,7 +126,7 @@ class Network:
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             listener.bind((address, port))
-            listener.listen(16)
+            listener.listen(_MOST_CONNECTIONS)
         except OSError as error:
             listener.close()
             raise ControllerError(_refusal(address, port, error)) from error
@@ -164,6 +165,9 @@ class Network:
             accepted, _ = listener.accept()
         except OSError:
             return  # it gave up while waiting
+        if len(self._connections) >= _MOST_CONNECTIONS:
+            accepted.close()
+            return
         accepted.setblocking(False)  # noqa: FBT003 - the socket module's own signature
         with contextlib.suppress(OSError):
             accepted.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)

@@ -5,45 +5,24 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import Any, Final
 
 from runtime.controller.arm import HOME, Arm
+from runtime.controller.force_functions import force_functions
 from runtime.controller.functions import general_functions
+from runtime.controller.journal import Journal
 from runtime.controller.motion_functions import motion_functions
 from runtime.controller.motions import MotionError
 from runtime.controller.program import Program, blocking_names
-from runtime.controller.safety import RobotMode, RuntimeState, Safety
+from runtime.controller.safety import RobotMode, RuntimeState, Safety, SafetyMode
 from runtime.controller.signals import Signals
 from runtime.controller.tokens import ScriptError
 from runtime.controller.urscript import Translation, translate
+from runtime.controller.versions import SCRIPT_SINCE, VERSIONS, Version
 from runtime.kinematics import ArmModel, Joints
 
 _LOG: Final = logging.getLogger("runtime.controller")
 _REMEMBERED: Final = 4
-
-
-@dataclass(frozen=True, slots=True)
-class Version:
-    """A PolyScope version, as far as clients ask for it."""
-
-    major: int
-    minor: int
-    bugfix: int
-    build: int
-
-    def __str__(self) -> str:
-        return f"{self.major}.{self.minor}.{self.bugfix}.{self.build}"
-
-    def is_at_least(self, minors: Mapping[int, int]) -> bool:
-        """Whether something that came with a minor version of each series is there already."""
-        return self.major in minors and self.minor >= minors[self.major]
-
-
-VERSIONS: Final[Mapping[str, Version]] = MappingProxyType(
-    {"ur5": Version(3, 15, 8, 0), "ur16e": Version(5, 17, 3, 0)}
-)
-"""The PolyScope version played for each arm model."""
 
 
 @dataclass(slots=True)
@@ -66,18 +45,25 @@ class ControlBox:
         model: The arm.
         wall_clock: Monotonic time, s, for the watchdog.
         joints: Where the arm stands at first, rad.
+        version: The PolyScope version to play; None takes the usual one for the arm.
     """
 
     def __init__(
-        self, model: ArmModel, wall_clock: Callable[[], float], joints: Joints = HOME
+        self,
+        model: ArmModel,
+        wall_clock: Callable[[], float],
+        joints: Joints = HOME,
+        version: Version | None = None,
     ) -> None:
         self.model: Final = model
-        self.version: Final = VERSIONS[model.name]
+        self.version: Final = VERSIONS[model.name] if version is None else version
         self.cycle_s: Final = 1.0 / model.frequency_hz
         self.arm: Final = Arm(model, joints)
         self.safety: Final = Safety()
         self.signals: Final = Signals()
         self.time_s = 0.0
+        self.journal: Final = Journal(self.arm, lambda: self.time_s)
+        self.in_remote_control = True
         self.program: Program | None = None
         self.paused = False
         self.last_failure: str | None = None
@@ -86,9 +72,26 @@ class ControlBox:
         self._functions: Final[Mapping[str, Callable[..., Any]]] = {
             **general_functions(self),
             **motion_functions(self),
+            **force_functions(self),
+            **self._missing_functions(),
         }
         self._translations: dict[str, Translation] = {}
         self._blocking: Final = blocking_names(self._functions)
+
+    def _missing_functions(self) -> dict[str, Callable[..., Any]]:
+        """Give, for each function that came later than the version played, one that says so."""
+
+        def missing(name: str) -> Callable[..., Any]:
+            def refuse(*_values: Any, **_named: Any) -> None:
+                raise ScriptError(f"{name}() is not known to PolyScope {self.version}")
+
+            return refuse
+
+        return {
+            name: missing(name)
+            for name, since in SCRIPT_SINCE.items()
+            if not self.version.is_at_least(since)
+        }
 
     @property
     def runtime_state(self) -> RuntimeState:
@@ -106,6 +109,8 @@ class ControlBox:
     def cycle(self) -> None:
         """Advance robot time by one control period."""
         self.time_s += self.cycle_s
+        if self.safety.step(self.time_s):
+            self._powered_up()
         self._check_watchdog()
         if self.program is not None and not self.paused:
             self.program.step()
@@ -115,6 +120,12 @@ class ControlBox:
             self.arm.step(self.cycle_s)
         except MotionError as error:
             self.protective_stop(str(error))
+        self.journal.observe(may_move=self.safety.may_move)
+
+    def _powered_up(self) -> None:
+        self.journal.note("brakes_released", "")
+        if self.safety.may_move and not self.paused:
+            self.arm.unhold()
 
     # The program
 
@@ -129,12 +140,15 @@ class ControlBox:
                 f"a program was refused: robot mode {self.safety.robot_mode.name}, "
                 f"safety mode {self.safety.mode.name}"
             )
+        if not self.in_remote_control:
+            raise ScriptError("a program was refused: the controller is in local control")
         translation = self._translate(text)
         self.stop_program("another program was started")
         self.last_failure = None
         self.paused = False
         self.program = Program(translation, self._functions)
         self.log(f"program {translation.name} started")
+        self.journal.note("program_started", translation.name)
 
     def _translate(self, text: str) -> Translation:
         """Translate, or remember: clients upload the same program again after every stop."""
@@ -156,6 +170,7 @@ class ControlBox:
             return False
         self.paused = True
         self.arm.hold()
+        self.journal.note("program_paused", self.program.name)
         return True
 
     def play(self) -> bool:
@@ -164,6 +179,7 @@ class ControlBox:
             return False
         self.paused = False
         self.arm.unhold()
+        self.journal.note("program_resumed", self.program.name)
         return True
 
     def _program_over(self, program: Program, reason: str = "it came to its end") -> None:
@@ -174,6 +190,7 @@ class ControlBox:
         self.arm.force_mode = None
         if self.safety.may_move:
             self.arm.unhold()
+        self.journal.note("program_ended", program.failure or reason)
         if program.failure is not None:
             self.last_failure = program.failure
             self.warn(f"program {program.name} failed: {program.failure}")
@@ -187,14 +204,18 @@ class ControlBox:
         if not self.safety.protective_stop(self.time_s, reason):
             return False
         self.warn(f"protective stop: {reason}")
+        self.journal.note("protective_stop", reason)
         self.arm.hold()
         self.paused = self.program is not None
         return True
 
     def unlock_refusal(self) -> str | None:
         """Unlock a protective stop; None when done. A paused program stays paused."""
+        stopped = self.safety.mode is SafetyMode.PROTECTIVE_STOP
         refusal = self.safety.unlock_refusal(self.time_s)
-        if refusal is None and not self.paused:
+        if refusal is None and stopped:
+            self.journal.note("protective_stop_unlocked", "")
+        if refusal is None and not self.paused and self.safety.may_move:
             self.arm.unhold()
         return refusal
 
@@ -202,22 +223,30 @@ class ControlBox:
         """Press the emergency stop: the program ends and the power goes."""
         self.safety.emergency_stop()
         self.warn("emergency stop")
+        self.journal.note("emergency_stop", "")
         self.arm.hold()
         self.stop_program("emergency stop")
+
+    def release_emergency_stop(self) -> None:
+        """Pull the emergency stop out again; the arm stays without power."""
+        if self.safety.release_emergency_stop():
+            self.log("emergency stop released")
+            self.journal.note("emergency_stop_released", "")
+
+    def power_on(self) -> bool:
+        """Power the arm, brakes still closed; False while the emergency stop is pressed."""
+        return self.safety.power_on(self.time_s)
 
     def power_off(self) -> None:
         """Take the power from the arm; the program ends."""
         self.safety.power_off()
+        self.journal.note("power_off", "")
         self.arm.hold()
         self.stop_program("power off")
 
     def release_brakes(self) -> bool:
-        """Make the arm ready to move; False while the emergency stop is pressed."""
-        if not self.safety.release_brakes():
-            return False
-        if self.safety.may_move and not self.paused:
-            self.arm.unhold()
-        return True
+        """Get the arm ready to move, in a while; False while the emergency stop is pressed."""
+        return self.safety.release_brakes(self.time_s)
 
     @property
     def robot_status_bits(self) -> int:
@@ -247,10 +276,9 @@ class ControlBox:
             return
         if self._wall_clock() - watched.renewed_s <= watched.period_s:
             return
-        self.warn(
-            f"watchdog: {watched.variable} was not written for {watched.period_s:g} s; "
-            f"{watched.action}"
-        )
+        words = f"{watched.variable} was not written for {watched.period_s:g} s; {watched.action}"
+        self.warn(f"watchdog: {words}")
+        self.journal.note("watchdog", words)
         if watched.action == "stop":
             self.stop_program("watchdog")
         elif watched.action == "pause":

@@ -15,9 +15,12 @@ from runtime.controller.bench import BenchServer
 from runtime.controller.connections import Connection, Network
 from runtime.controller.control_box import ControlBox
 from runtime.controller.dashboard import DashboardServer
+from runtime.controller.fault_actions import FaultActions, FaultSchedule
+from runtime.controller.faults import Fault
 from runtime.controller.ports import BENCH_PORT, DASHBOARD_PORT, RTDE_PORT, SCRIPT_PORTS
 from runtime.controller.rtde_server import RtdeServer
 from runtime.controller.script_server import ScriptServer
+from runtime.controller.versions import Version
 from runtime.kinematics import ArmModel, Joints
 
 _LOG: Final = logging.getLogger("runtime.controller")
@@ -36,6 +39,8 @@ class Settings:
         clock: Control cycles of robot time per control period of wall time, > 0.
         joints: Where the arm stands at first, rad.
         parent: The process whose end is this one's too; None to live alone.
+        version: The PolyScope version to play; None takes the usual one for the arm.
+        faults: What is to go wrong.
     """
 
     model: ArmModel
@@ -43,6 +48,8 @@ class Settings:
     clock: float
     joints: Joints
     parent: int | None
+    version: Version | None = None
+    faults: tuple[Fault, ...] = ()
 
 
 class Controller:
@@ -50,25 +57,34 @@ class Controller:
 
     Args:
         settings: How to run.
+        write: Takes the journal, line by line; None keeps it in memory only.
 
     Raises:
         ControllerError: A port is busy or the address is not this machine's.
     """
 
-    def __init__(self, settings: Settings) -> None:
+    def __init__(self, settings: Settings, write: Callable[[str], None] | None = None) -> None:
         self._settings = settings
-        self._box = ControlBox(settings.model, time.monotonic, settings.joints)
+        box = self._box = ControlBox(
+            settings.model, time.monotonic, settings.joints, settings.version
+        )
+        box.journal.write = write
         self._network = Network()
-        self._rtde = RtdeServer(self._box)
-        self._bench = BenchServer(self._box, self._rtde.drop_all)
+        self._rtde = RtdeServer(box)
+        dashboard = DashboardServer(box)
+        self._actions = FaultActions(box, self._rtde, dashboard)
+        self._bench = BenchServer(box, self._actions)
+        self._bench.schedule = FaultSchedule(settings.faults, box, self._actions.act)
         self._stopping = False
         self._parent_is_there = _parent_watch(settings.parent)
         self._owed_cycles = 0.0
-        scripts = ScriptServer(self._box)
+        scripts = ScriptServer(box)
+        # What is wrong from the beginning is so before anybody can connect.
+        self._bench.schedule.step()
         try:
             listen = self._network.listen
             listen(settings.address, BENCH_PORT, self._bench.accept)
-            listen(settings.address, DASHBOARD_PORT, DashboardServer(self._box).accept)
+            listen(settings.address, DASHBOARD_PORT, dashboard.accept)
             for port in SCRIPT_PORTS:
                 listen(settings.address, port, scripts.accept)
             listen(settings.address, RTDE_PORT, self._rtde.accept)
@@ -81,6 +97,7 @@ class Controller:
 
     def __exit__(self, *_exception: object) -> None:
         self._network.close()
+        self._box.journal.close()
 
     def stop_on_signals(self) -> None:
         """Let SIGTERM and SIGINT end the loop in good order."""
@@ -93,14 +110,15 @@ class Controller:
         due = time.monotonic() + period
         while not self._stopping and self._parent_is_there():
             self._network.poll(max(0.0, due - time.monotonic()), self._violated)
-            if self._bench.dying:
-                return 1
-            if self._bench.silence_s > 0:
+            if self._actions.silence_s > 0:
                 self._be_silent()
             now = time.monotonic()
             if now >= due:
                 self._advance()
-                due = due + period if now - due < _HOPELESS_S else now + period
+                wait = period * self._actions.pace()
+                due = due + wait if now - due < _HOPELESS_S else now + wait
+            if self._actions.dying:
+                return 1
         return 0
 
     def _advance(self) -> None:
@@ -108,13 +126,14 @@ class Controller:
         while self._owed_cycles >= 1.0:
             self._owed_cycles -= 1.0
             self._box.cycle()
+            self._bench.schedule.step()
+            self._actions.pass_by()
         self._rtde.publish()
 
     def _be_silent(self) -> None:
         """Do nothing at all for the time asked, sockets open, but hear signals."""
-        until = time.monotonic() + self._bench.silence_s
-        self._bench.silence_s = 0.0
-        _LOG.warning("silent by request of the bench")
+        until = time.monotonic() + self._actions.silence_s
+        self._actions.silence_s = 0.0
         while not self._stopping and self._parent_is_there() and time.monotonic() < until:
             time.sleep(_NAP_S)
 

@@ -194,9 +194,6 @@ def _settings(box: ControlBox) -> dict[str, Callable[..., Any]]:
         "set_tcp": lambda pose: arm.set_tcp(script_values.pose(pose)),
         "get_tcp_offset": lambda: ScriptPose(arm.tool.tcp),
         "set_gravity": lambda _direction: None,  # the arm is kinematic: nothing falls
-        "zero_ftsensor": arm.zero_wrench,
-        "force_mode_set_damping": lambda _damping: None,  # forces are not imitated
-        "force_mode_set_gain_scaling": lambda _scaling: None,
         "rtde_set_watchdog": set_watchdog,
         "protective_stop": lambda: box.protective_stop("the program asked for it"),
         "get_steptime": lambda: box.cycle_s,

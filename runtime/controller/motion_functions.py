@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 import numpy as np
 
 from runtime.controller import script_values
-from runtime.controller.arm import ForceMode
 from runtime.controller.motions import JointMove, JointServo, JointSpeed, Motion
 from runtime.controller.script_values import ScriptPose, ScriptValue, finite
 from runtime.controller.tokens import ScriptError
@@ -42,8 +41,6 @@ def motion_functions(box: ControlBox) -> Mapping[str, Callable[..., Any]]:
         "servoj": moves.servoj,
         "sleep": moves.sleep,
         "sync": moves.sync,
-        "force_mode": moves.force_mode,
-        "end_force_mode": moves.end_force_mode,
         "is_steady": lambda: box.arm.is_steady,
         "get_inverse_kin": questions.get_inverse_kin,
         "get_inverse_kin_has_solution": questions.get_inverse_kin_has_solution,
@@ -60,8 +57,6 @@ def motion_functions(box: ControlBox) -> Mapping[str, Callable[..., Any]]:
         "get_actual_tool_flange_pose": lambda: ScriptPose(
             matrix_to_pose(forward(box.arm.model, box.arm.joints))
         ),
-        "get_tcp_force": lambda: list(box.arm.wrench),
-        "get_joint_torques": questions.get_joint_torques,
     }
 
 
@@ -152,30 +147,6 @@ class _Moves:
     def sync(self) -> _Waiting:
         yield
 
-    def force_mode(
-        self,
-        task_frame: ScriptValue,
-        selection_vector: ScriptValue,
-        wrench: ScriptValue,
-        type: ScriptValue,  # noqa: A002 - the name URScript gives it
-        limits: ScriptValue,
-    ) -> None:
-        if type != 2:
-            raise ScriptError(
-                f"force_mode() of type {type} is not supported by this stand-in controller; "
-                "type 2 is"
-            )
-        selected = script_values.joints(selection_vector, "the selection vector")
-        self._arm.force_mode = ForceMode(
-            script_values.pose(task_frame, "the task frame"),
-            tuple(axis != 0 for axis in selected),
-            script_values.pose(wrench, "the wrench"),
-            script_values.pose(limits, "the limits"),
-        )
-
-    def end_force_mode(self) -> None:
-        self._arm.force_mode = None
-
     def _joints(self, value: ScriptValue) -> Joints:
         if isinstance(value, ScriptPose):
             return _solve(self._arm.tool, script_values.pose(value), self._arm.joints)
@@ -246,11 +217,6 @@ class _Questions:
 
     def get_actual_joint_positions_history(self, steps: ScriptValue = 0) -> list[float]:
         return list(self._arm.joints_before(int(finite(steps, "the number of steps"))))
-
-    def get_joint_torques(self) -> list[float]:
-        twist = self._arm.tool.jacobian(self._arm.state.q)[1]
-        torques: list[float] = (twist.T @ np.array(self._arm.wrench)).tolist()
-        return torques
 
     def _tool(self, tcp: ScriptValue) -> Tool:
         return self._arm.tool if tcp is None else Tool(self._arm.model, script_values.pose(tcp))

@@ -6,6 +6,7 @@ while they wait for the controller: in one interpreter the two would wait for ea
 
 from __future__ import annotations
 
+import json
 import os
 import select
 import socket
@@ -14,10 +15,12 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, Any, Final, Self
 
 from runtime.controller.bench_client import BenchClient
+from runtime.controller.faults import parse_faults
 from runtime.controller.ports import BUSY, NAME, PORTS
 from runtime.errors import ControllerError
 from runtime.kinematics import MODELS
@@ -25,6 +28,7 @@ from runtime.kinematics import MODELS
 _READY_WITHIN_S: Final = 20.0
 _TERMINATE_WITHIN_S: Final = 3.0
 _ADDRESSES: Final = 200
+_TICKS_PER_S: Final = 4
 
 
 class ControllerProcess:
@@ -54,18 +58,29 @@ class ControllerProcess:
         clock: float = 1.0,
         joints: Sequence[float] | None = None,
         log: Path | str | None = None,
+        version: str | None = None,
+        faults: Sequence[Mapping[str, Any]] = (),
+        seed: int = 0,
+        journal: Path | str | None = None,
     ) -> ControllerProcess:
         """Start a controller and wait until all its ports listen.
 
         Args:
             model: "ur5" or "ur16e".
-            address: Where to listen; None takes the first free one from 127.0.0.2 upward.
+            address: Where to listen; None takes a free loopback address that no controller has had
+                lately: a client of an earlier one may still be trying to connect again, or about
+                to stop its program.
             clock: Control cycles of robot time per control period of wall time, > 0.
             joints: Six joint angles to start at, rad; None is the usual tool-down pose.
             log: A file for the controller's log; None writes none.
+            version: The PolyScope version to play, such as "5.17.3"; None takes the usual one.
+            faults: What is to go wrong and when, as `runtime.controller.faults` describes it.
+            seed: Decides what the faults leave to chance.
+            journal: A file for what the controller witnesses; it can be asked for it anyway.
 
         Raises:
             ControllerError: It did not start; the text is the controller's own sentence.
+            ConfigError: The faults are no schedule; says where and what is allowed.
         """
         if model not in MODELS:
             raise ControllerError(
@@ -75,10 +90,16 @@ class ControllerProcess:
         if joints is not None:
             # One word, so that a leading minus is not taken for an option.
             options.append("--joints=" + ",".join(repr(float(q)) for q in joints))
-        if log is not None:
-            options += ["--log", str(log)]
+        for name, value in (("--log", log), ("--journal", journal), ("--version", version)):
+            if value is not None:
+                options += [name, str(value)]
+        with _schedule_file(faults, seed) as schedule:
+            return cls._start(model, address, [*options, *schedule])
+
+    @classmethod
+    def _start(cls, model: str, address: str | None, options: Sequence[str]) -> ControllerProcess:
         candidates = [address] if address is not None else _free_addresses()
-        refusal = f"no loopback address from 127.0.0.2 upward is free for the {NAME}"
+        refusal = f"no loopback address is free for the {NAME}"
         for candidate in candidates:
             process, refusal = cls._spawn(model, candidate, options)
             if process is not None:
@@ -112,7 +133,7 @@ class ControllerProcess:
             return process, ""
         slow = child.poll() is None
         process._end_child()
-        words = process._last_words()
+        words = process.last_words()
         process.close()
         if slow:
             words = f"the {NAME} at {address} was not ready within {_READY_WITHIN_S:g} s. {words}"
@@ -168,9 +189,24 @@ class ControllerProcess:
                 self._child.kill()
                 self._child.wait()
 
-    def _last_words(self) -> str:
+    def last_words(self) -> str:
+        """Give the end of what the controller has said on its standard error."""
         self._errors.seek(0)
         return self._errors.read()[-4000:]
+
+
+@contextmanager
+def _schedule_file(faults: Sequence[Mapping[str, Any]], seed: int) -> Iterator[list[str]]:
+    """Give the options for a schedule, which lies in a file while the child reads it."""
+    content = [dict(fault) for fault in faults]
+    parse_faults(content, seed)  # a mistake is the caller's: it should not look like the child's
+    if not content:
+        yield []
+        return
+    with tempfile.NamedTemporaryFile("w", suffix=".yaml", encoding="utf-8") as file:
+        json.dump(content, file)  # which is YAML too
+        file.flush()
+        yield ["--faults", file.name, "--seed", str(seed)]
 
 
 def _environment() -> dict[str, str]:
@@ -181,9 +217,13 @@ def _environment() -> dict[str, str]:
 
 
 def _free_addresses() -> Iterator[str]:
-    """Give loopback addresses none of whose controller ports is taken at this moment."""
-    for last in range(2, 2 + _ADDRESSES):
-        address = f"127.0.0.{last}"
+    """Give loopback addresses none of whose controller ports is taken at this moment.
+
+    A net for each process, and in it another address each tick of the clock.
+    """
+    net, tick = os.getpid(), int(time.monotonic() * _TICKS_PER_S)
+    for number in range(tick, tick + _ADDRESSES):
+        address = f"127.{1 + net % 200}.{net // 200 % 250}.{2 + number % 250}"
         if all(_is_free(address, port) for port in PORTS):
             yield address
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import re
 import traceback
 from collections.abc import Callable, Generator, Mapping
 from typing import Any, Final, TypeAlias
@@ -17,6 +18,9 @@ Thread: TypeAlias = Generator[None, None, ScriptValue]
 _LOOPS_A_CYCLE: Final = 20_000
 _MOST_THREADS: Final = 50
 _MAIN: Final = 1
+
+_NAMED: Final = re.compile(r"'[vf]_(\w+)'")
+_COMPARED: Final = re.compile(r"'(<|>|<=|>=)' not supported")
 
 # What a program can make Python raise: mistakes of its author, not of this module.
 _MISTAKES: Final = (
@@ -183,10 +187,13 @@ class Program:
 
 def _explain(error: Exception) -> str:
     """Say what a Python mistake means for the author of the program."""
-    if isinstance(error, NameError) and error.name is not None:
-        return f"'{error.name[2:]}' has no value yet"
+    text = str(error)
+    if isinstance(error, NameError) and (named := _NAMED.search(text)) is not None:
+        return f"'{named[1]}' has no value yet"
+    if isinstance(error, TypeError) and (compared := _COMPARED.match(text)) is not None:
+        return f"these two cannot be compared with {compared[1]}"
     if isinstance(error, RecursionError):
         return "functions call each other without end"
     if isinstance(error, ZeroDivisionError):
         return "a division by zero"
-    return str(error).replace("f_", "").replace("v_", "")
+    return text.replace("f_", "").replace("v_", "")

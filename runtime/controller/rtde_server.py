@@ -23,6 +23,7 @@ from runtime.controller.rtde_wire import (
     frame,
     take_packages,
 )
+from runtime.controller.signals import REGISTERS
 
 _MOST_RECIPES: Final = 255
 _REFUSALS: Final = frozenset(("NOT_FOUND", "IN_USE"))
@@ -50,7 +51,7 @@ class RtdeServer:
         self.outputs: Final = outputs(box.version)
         self.input_types: Final = input_types()
         self._sessions: dict[_RtdeSession, None] = {}
-        self._owners: dict[str, _RtdeSession] = {}
+        self._owners: dict[str, _RtdeSession | None] = {}
         self._tick = 0
 
     def accept(self, connection: Connection) -> _RtdeSession:
@@ -72,6 +73,23 @@ class RtdeServer:
         for session in tuple(self._sessions):
             session.connection.close()
 
+    def send_to_all(self, data: bytes) -> None:
+        """Send every client bytes that need not mean anything."""
+        for session in tuple(self._sessions):
+            session.connection.send(data)
+
+    def occupy(self, which: str) -> None:
+        """Let a fieldbus own the "lower", "upper" or "all" input registers that are still free."""
+        half = REGISTERS // 2
+        first, end = {"lower": (0, half), "upper": (half, REGISTERS)}.get(which, (0, REGISTERS))
+        for index in range(first, end):
+            for kind in ("int", "double"):
+                self._owners.setdefault(f"input_{kind}_register_{index}", None)
+
+    def vacate(self) -> None:
+        """Let the fieldbus give back what it owns."""
+        self._owners = {name: at for name, at in self._owners.items() if at is not None}
+
     def claim(self, names: Sequence[str], session: _RtdeSession) -> tuple[str, ...]:
         """Make a client the owner of input variables; the types, or why each is refused."""
         answers: list[str] = []
@@ -90,6 +108,8 @@ class RtdeServer:
     def forget(self, session: _RtdeSession) -> None:
         """Free what a client owned."""
         self._sessions.pop(session, None)
+        control = session in self._owners.values()
+        self.box.journal.note("link_lost", "control" if control else "state only")
         self._owners = {name: at for name, at in self._owners.items() if at is not session}
 
 
@@ -147,6 +167,8 @@ class _RtdeSession:
             case PackageType.SETUP_INPUTS:
                 self._set_up_inputs(payload)
             case PackageType.START:
+                if not self._streaming:
+                    self._server.box.journal.note("link_opened", self.connection.peer)
                 self._streaming = bool(self._streams)
                 self._answer(PackageType.START, bytes([self._streaming]))
             case PackageType.PAUSE:

@@ -10,18 +10,24 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, TypeAlias
 
-from runtime.controller.control_box import ControlBox, Version
+from runtime.controller.control_box import ControlBox
 from runtime.controller.rtde_wire import DataType, Value
 from runtime.controller.safety import RobotMode
 from runtime.controller.signals import REGISTERS
+from runtime.controller.versions import Version
 
 Read: TypeAlias = Callable[[ControlBox], Value]
 
 _ZERO3: Final = (0.0, 0.0, 0.0)
 _ZERO6: Final = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
-# The joint modes of the protocol: running, idle, power off.
-_JOINT_MODES: Final = {RobotMode.RUNNING: 253, RobotMode.IDLE: 255, RobotMode.POWER_OFF: 239}
+# The joint modes of the protocol: running, idle, booting, power off.
+_JOINT_MODES: Final = {
+    RobotMode.RUNNING: 253,
+    RobotMode.IDLE: 255,
+    RobotMode.POWER_ON: 247,
+    RobotMode.POWER_OFF: 239,
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +82,7 @@ def _motion() -> dict[str, Output]:
         "actual_TCP_speed": Output(six, velocity),
         "target_TCP_speed": Output(six, velocity),
         "actual_TCP_force": Output(six, lambda box: box.arm.wrench),
-        "ft_raw_wrench": Output(six, lambda box: box.arm.external_wrench, {5: 9}),
+        "ft_raw_wrench": Output(six, lambda box: box.arm.raw_wrench, {5: 9}),
         "actual_tool_accelerometer": Output(DataType.VECTOR3D, _constant((0.0, 0.0, 9.81))),
         "speed_scaling": Output(DataType.DOUBLE, lambda box: box.arm.scaling),
         "target_speed_fraction": Output(DataType.DOUBLE, lambda box: box.arm.speed_fraction),

@@ -13,6 +13,11 @@ UNLOCK_AFTER_S: Final = 5.0
 """A protective stop cannot be unlocked sooner than this after it occurred, robot time."""
 
 
+BOOTING_S: Final = 1.0
+"""How long powering the arm takes, and releasing its brakes again as long, robot time. A real one
+takes some seconds."""
+
+
 class SafetyMode(IntEnum):
     """The state stream's `safety_mode`, as far as the stand-in knows it."""
 
@@ -25,6 +30,7 @@ class RobotMode(IntEnum):
     """The state stream's `robot_mode`, as far as the stand-in knows it."""
 
     POWER_OFF = 3
+    POWER_ON = 4
     IDLE = 5
     RUNNING = 7
 
@@ -49,13 +55,15 @@ _SAFETY_BITS: Final = {
 class Safety:
     """The safety system: it knows why the arm may not move."""
 
-    __slots__ = ("_stopped_at_s", "mode", "reason", "robot_mode")
+    __slots__ = ("_goal", "_ready_at_s", "_stopped_at_s", "mode", "reason", "robot_mode")
 
     def __init__(self) -> None:
         self.mode = SafetyMode.NORMAL
         self.robot_mode = RobotMode.RUNNING
         self.reason = ""
         self._stopped_at_s = 0.0
+        self._goal = RobotMode.RUNNING
+        self._ready_at_s = 0.0
 
     @property
     def may_move(self) -> bool:
@@ -93,30 +101,47 @@ class Safety:
     def emergency_stop(self) -> None:
         """Press the emergency stop: power goes, the brakes close."""
         self.mode = SafetyMode.ROBOT_EMERGENCY_STOP
-        self.robot_mode = RobotMode.POWER_OFF
+        self.power_off()
         self.reason = "the emergency stop was pressed"
 
-    def release_emergency_stop(self) -> None:
-        """Pull the emergency stop out again; the arm stays without power."""
-        if self.mode is SafetyMode.ROBOT_EMERGENCY_STOP:
-            self.mode = SafetyMode.NORMAL
-            self.reason = ""
-
-    def power_on(self) -> bool:
-        """Power the arm, brakes still closed; False while the emergency stop is pressed."""
-        if self.mode is SafetyMode.ROBOT_EMERGENCY_STOP:
+    def release_emergency_stop(self) -> bool:
+        """Pull the emergency stop out again; the arm stays without power. False if it was out."""
+        if self.mode is not SafetyMode.ROBOT_EMERGENCY_STOP:
             return False
-        if self.robot_mode is RobotMode.POWER_OFF:
-            self.robot_mode = RobotMode.IDLE
+        self.mode = SafetyMode.NORMAL
+        self.reason = ""
         return True
+
+    def power_on(self, now_s: float) -> bool:
+        """Begin to power the arm; False while the emergency stop is pressed."""
+        return self._begin(RobotMode.IDLE, now_s)
+
+    def release_brakes(self, now_s: float) -> bool:
+        """Begin to power the arm, if need be, and to release its brakes; as `power_on`."""
+        return self._begin(RobotMode.RUNNING, now_s)
 
     def power_off(self) -> None:
         """Take the power away."""
-        self.robot_mode = RobotMode.POWER_OFF
+        self.robot_mode = self._goal = RobotMode.POWER_OFF
 
-    def release_brakes(self) -> bool:
-        """Power the arm if need be and release its brakes; False in an emergency stop."""
-        if not self.power_on():
+    def step(self, now_s: float) -> bool:
+        """Go on with powering up; True in the cycle in which the brakes are released."""
+        if self.robot_mode >= self._goal or now_s < self._ready_at_s:
+            return False
+        if self.robot_mode is RobotMode.POWER_ON:
+            self.robot_mode = RobotMode.IDLE
+            self._ready_at_s = now_s + BOOTING_S
             return False
         self.robot_mode = RobotMode.RUNNING
+        return True
+
+    def _begin(self, goal: RobotMode, now_s: float) -> bool:
+        if self.mode is SafetyMode.ROBOT_EMERGENCY_STOP:
+            return False
+        if self.robot_mode is RobotMode.POWER_OFF:
+            self.robot_mode = RobotMode.POWER_ON
+            self._ready_at_s = now_s + BOOTING_S
+        elif self.robot_mode is RobotMode.IDLE and self._goal is RobotMode.IDLE:
+            self._ready_at_s = now_s + BOOTING_S
+        self._goal = max(self._goal, goal)
         return True

@@ -81,17 +81,21 @@ class Signals:
         return _named(self.digital_outputs, "out")
 
 
-def parse_digital_input(name: str) -> tuple[str, int]:
+def parse_digital(name: str, direction: str) -> tuple[str, int]:
     """Split "tool_digital_in_0" into group and index.
 
+    Args:
+        name: Of an input or output.
+        direction: "in" or "out", which it has to be.
+
     Raises:
-        SignalError: There is no such input.
+        SignalError: There is none of that name.
     """
     matched = _NAME.fullmatch(name)
-    if matched is None or matched[2] != "in" or int(matched[3]) >= _COUNTS[matched[1]]:
+    if matched is None or matched[2] != direction or int(matched[3]) >= _COUNTS[matched[1]]:
         raise SignalError(
-            f"there is no input '{name}'; there are standard_digital_in_0 to 7, "
-            "configurable_digital_in_0 to 7, tool_digital_in_0 and 1"
+            f"there is no {direction}put '{name}'; there are standard_digital_{direction}_0 to 7, "
+            f"configurable_digital_{direction}_0 to 7, tool_digital_{direction}_0 and 1"
         )
     return matched[1], int(matched[3])
 

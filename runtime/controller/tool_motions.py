@@ -10,6 +10,7 @@ from typing import Final
 
 import numpy as np
 
+from runtime.controller.arm_frames import jacobian, joint_axes
 from runtime.controller.motions import (
     MAX_JOINT_SPEED,
     JointState,
@@ -25,7 +26,6 @@ from runtime.kinematics import (
     Matrix,
     Pose,
     inverse,
-    link_frames,
     matrix_to_pose,
     nearest,
     pose_to_matrix,
@@ -55,19 +55,15 @@ class Tool:
 
     def pose(self, q: JointVector) -> Matrix:
         """Give the tool in the base frame, (4, 4)."""
-        at: Matrix = link_frames(self.model, q.tolist())[6] @ self._offset
+        at: Matrix = joint_axes(self.model, q.tolist()).flange @ self._offset
         return at
 
     def jacobian(self, q: JointVector) -> tuple[Matrix, Matrix]:
         """Give the tool's pose (4, 4) and its velocity per joint velocity (6, 6)."""
-        frames = link_frames(self.model, q.tolist())
-        pose = frames[6] @ self._offset
-        (ax, ay, az), (rx, ry, rz) = (
-            frames[:6, :3, 2].T,
-            (pose[:3, 3] - frames[:6, :3, 3]).T,
-        )
-        cross = (ay * rz - az * ry, az * rx - ax * rz, ax * ry - ay * rx)
-        return pose, np.array([*cross, ax, ay, az])
+        axes = joint_axes(self.model, q.tolist())
+        pose: Matrix = axes.flange @ self._offset
+        x, y, z = pose[:3, 3].tolist()
+        return pose, jacobian(axes, (x, y, z))
 
     def velocity(self, state: JointState) -> JointVector:
         """Give the tool's linear and angular velocity, (6,) m/s and rad/s."""
@@ -229,13 +225,19 @@ class ToolSpeed:
             qd = np.zeros(6)
         else:
             self._twist = self._target if self.done else twist + share * change
-            damped = jacobian @ jacobian.T + _DAMPING * np.eye(6)
-            qd = jacobian.T @ np.linalg.solve(damped, self._twist)
+            qd = joint_speeds(jacobian, self._twist)
         return JointState(state.q + qd * dt, qd)
 
     def interrupt(self) -> None:
         """Take the velocity up again from rest."""
         self._twist = None
+
+
+def joint_speeds(jacobian: Matrix, twist: JointVector) -> JointVector:
+    """Give the joint velocities, (6,) rad/s, for a tool velocity; finite in a singularity too."""
+    damped = jacobian @ jacobian.T + _DAMPING * np.eye(6)
+    speeds: JointVector = jacobian.T @ np.linalg.solve(damped, twist)
+    return speeds
 
 
 def _rotation_vector(rotation: Matrix) -> JointVector:

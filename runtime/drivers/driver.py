@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Protocol, TypeAlias
+from typing import Protocol, TypeAlias, runtime_checkable
 
 from aapa import Anchor
 from icarus_lite import Action, Outcome
@@ -26,6 +26,8 @@ class ArmState:
         gripper_closed: Whether the gripper's close output is on.
         gripped: Whether the gripper's sensor feels a part between its fingers.
         timestamp_s: The controller's own clock, s.
+        force_n: How hard the tool presses down, N; 0 where nothing measures it.
+        regrips: Whether the fingers are open only to take hold of the same part again.
     """
 
     joints: Joints
@@ -33,6 +35,8 @@ class ArmState:
     gripper_closed: bool
     gripped: bool
     timestamp_s: float
+    force_n: float = 0.0
+    regrips: bool = False
 
 
 class Driver(Protocol):
@@ -62,3 +66,26 @@ class Driver(Protocol):
 
     def close(self) -> None:
         """Stop the arm and let go of the connection. Never raises, never hangs."""
+
+
+@runtime_checkable
+class Recoverable(Protocol):
+    """A body that can be made fit to be driven again after a stop or a loss.
+
+    Only ever at the operator's word: whoever calls this has asked a person, who has looked at the
+    arm and found that it may move.
+    """
+
+    def recover(self) -> str:
+        """Make the arm fit to be driven again; the action that was under way stays failed.
+
+        Unlike everything else here it may take half a minute. Nothing moves.
+
+        Returns:
+            What was done, as a sentence without its full stop.
+
+        Raises:
+            ControllerError: It cannot be; the text says what a person must do first. It may be
+                called again then.
+            DriverError: The driver was closed.
+        """

@@ -8,10 +8,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from typing import Final
 
 from runtime.config import RobotConfig
 from runtime.drivers.driver import ArmState
 from runtime.drivers.limits import (
+    arm_solutions,
     blend,
     joint_distance,
     linear_path,
@@ -19,10 +21,23 @@ from runtime.drivers.limits import (
     travelled,
 )
 from runtime.drivers.stepping import StepEnd, SteppingDriver
-from runtime.drivers.steps import Grip, Look, MoveJoints, Step, duration_s, grip_failure
-from runtime.errors import UsageError
+from runtime.drivers.steps import (
+    ArmStep,
+    Felt,
+    Grip,
+    MoveJoints,
+    MoveLinear,
+    Press,
+    Tare,
+    Turn,
+    duration_s,
+    grip_failure,
+)
+from runtime.errors import DriverError, UsageError
 from runtime.kinematics import Joints, matrix_to_pose, pose_to_matrix
 from runtime.parts import PartModel
+
+_WHOLE: Final = 1e-9  # rad by which a whole stroke may be missed through rounding
 
 
 class DryRunDriver(SteppingDriver):
@@ -55,13 +70,13 @@ class DryRunDriver(SteppingDriver):
         self._gripped = False
         self._sensor_is_fed = False
         self._time_s = 0.0
-        self._step: Step | None = None
+        self._step: ArmStep | None = None
         self._step_time_s = 0.0
         self._path: tuple[Joints, ...] = ()
-        self._log: list[Step] = []
+        self._log: list[ArmStep] = []
 
     @property
-    def log(self) -> tuple[Step, ...]:
+    def log(self) -> tuple[ArmStep, ...]:
         """The steps it has begun, in order, looks left out."""
         return tuple(self._log)
 
@@ -78,6 +93,7 @@ class DryRunDriver(SteppingDriver):
             self._closed,
             self._gripped,
             self._time_s,
+            regrips=self._regrips,
         )
 
     def close(self) -> None:
@@ -88,7 +104,7 @@ class DryRunDriver(SteppingDriver):
         self._time_s += self._dt
         return ""
 
-    def _begin(self, step: Step) -> None:
+    def _begin(self, step: ArmStep) -> None:
         self._log.append(step)
         self._step, self._step_time_s = step, 0.0
         match step:
@@ -98,9 +114,11 @@ class DryRunDriver(SteppingDriver):
                 self._closed = step.close
                 if not self._sensor_is_fed:
                     self._gripped = step.expect_gripped
-            case Look():
+            case Tare():
                 self._path = ()
-            case _:
+            case Turn():
+                self._path = (self._joints, self._turned(step))
+            case MoveLinear() | Press():
                 origin = tcp_matrix(self._config, step.start)
                 target = pose_to_matrix(step.pose)
                 self._path = linear_path(self._config, step.start, origin, target)
@@ -108,24 +126,51 @@ class DryRunDriver(SteppingDriver):
     def _advance(self) -> StepEnd | None:
         self._step_time_s += self._dt
         step = self._step
-        if isinstance(step, Grip):
-            return self._feel_for(step)
-        if step is None or isinstance(step, Look):
-            return StepEnd()
-        speeds = self._config.speeds
-        if isinstance(step, MoveJoints):
-            whole = joint_distance(step.start, step.joints)
-            done = travelled(whole, speeds.joint, speeds.joint_acceleration, self._step_time_s)
-        else:
-            whole = step.length_m
-            done = travelled(whole, speeds.tool, speeds.tool_acceleration, self._step_time_s)
-        if self._step_time_s >= duration_s(step, self._config):
-            self._joints, self._step = self._path[-1], None
-            return StepEnd()
+        match step:
+            case None | Tare():
+                return StepEnd()
+            case Grip():
+                return self._feel_for(step)
+            case _:
+                return self._go(step)
+
+    def _go(self, step: MoveJoints | MoveLinear | Press | Turn) -> StepEnd | None:
+        """Move along the path by one poll's time."""
+        if self._step_time_s >= self._whole_s(step):
+            start, self._joints, self._step = self._path[0], self._path[-1], None
+            return StepEnd(felt=_felt(step, self._joints[5] - start[5]))
+        speeds, force = self._config.speeds, self._config.force
+        match step:
+            case MoveJoints():
+                whole = joint_distance(step.start, step.joints)
+                done = travelled(whole, speeds.joint, speeds.joint_acceleration, self._step_time_s)
+            case MoveLinear():
+                whole = step.length_m
+                done = travelled(whole, speeds.tool, speeds.tool_acceleration, self._step_time_s)
+            case Press():
+                whole, done = step.length_m, force.descent_speed * self._step_time_s
+            case Turn():
+                whole, done = self._whole_s(step), self._step_time_s
         place = done / whole * (len(self._path) - 1)
         index = min(int(place), len(self._path) - 2)
         self._joints = blend(self._path[index], self._path[index + 1], place - index)
         return None
+
+    def _whole_s(self, step: MoveJoints | MoveLinear | Press | Turn) -> float:
+        if isinstance(step, Turn):  # ends where the wrist must
+            return abs(self._path[-1][5] - self._path[0][5]) / self._config.force.turning_speed
+        return duration_s(step, self._config)
+
+    def _turned(self, step: Turn) -> Joints:
+        """Give the joint angles at the end of a stroke: the wrist turned, down or up the thread."""
+        way = step.wrist_until_rad - self._joints[5]
+        turn = math.copysign(min(abs(way), step.angle_rad), way)
+        tool = tcp_matrix(self._config, self._joints)
+        tool[2, 3] -= step.pitch_m * turn / (2 * math.pi)
+        down = arm_solutions(self._config, tool, self._joints)
+        if not down:
+            raise DriverError("the thread leads out of the arm's reach")
+        return (*down[0][:5], down[0][5] + turn)
 
     def _feel_for(self, step: Grip) -> StepEnd | None:
         gripper = self._config.gripper
@@ -144,3 +189,11 @@ class DryRunDriver(SteppingDriver):
 
     def _at_rest(self) -> bool:
         return self._step is None
+
+
+def _felt(step: ArmStep, turn_rad: float) -> Felt | None:
+    """Give what would be felt if all were as expected: a screw is tight when it is in."""
+    if not isinstance(step, Turn):
+        return None
+    stalled = step.clockwise and abs(turn_rad) >= step.angle_rad - _WHOLE
+    return Felt(turned_rad=turn_rad, stalled=stalled)

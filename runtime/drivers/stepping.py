@@ -6,10 +6,11 @@ reporting outcomes are done here.
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 from aapa import Anchor
@@ -18,7 +19,18 @@ from runtime.config import RobotConfig
 from runtime.drivers.driver import ArmState
 from runtime.drivers.limits import MotionError
 from runtime.drivers.motions import COMMANDS, plan_motion
-from runtime.drivers.steps import Look, MoveJoints, MoveLinear, Step
+from runtime.drivers.steps import (
+    ArmStep,
+    Felt,
+    GiveUp,
+    Grip,
+    Look,
+    Press,
+    Progress,
+    Step,
+    Turn,
+    is_holding,
+)
 from runtime.errors import DriverError, UsageError
 from runtime.parts import PartModel
 
@@ -28,9 +40,15 @@ PARK: Final = Action("park")
 
 @dataclass(frozen=True, slots=True)
 class StepEnd:
-    """How a step ended: `reason` says why it failed, and is empty if it did not."""
+    """How a step ended.
+
+    Args:
+        reason: Why it failed; empty if it did not.
+        felt: What a step by force has measured.
+    """
 
     reason: str = ""
+    felt: Felt | None = None
 
 
 @dataclass(slots=True)
@@ -41,9 +59,16 @@ class _Run:
     commands: tuple[Action, ...]
     steps: deque[Step] = field(default_factory=deque)
     planned: bool = False
-    looked: bool = False
+    progress: Progress = field(default_factory=Progress)
     looks_left: int = 0
     refusal: str = ""
+    note: str = ""
+    regrips: bool = False
+
+    def plan_anew(self, commands: tuple[Action, ...], progress: Progress) -> None:
+        """Forget the steps that are left: the rest is to be planned from here."""
+        self.commands, self.progress, self.planned = commands, progress, False
+        self.steps.clear()
 
 
 class SteppingDriver(ABC):
@@ -63,6 +88,11 @@ class SteppingDriver(ABC):
     def state(self) -> ArmState:
         """Give the newest measured state. Raises DriverError when the link is lost."""
 
+    @property
+    def _regrips(self) -> bool:
+        """Whether the part has been let go only to be taken hold of again."""
+        return self._run is not None and self._run.regrips
+
     @abstractmethod
     def close(self) -> None:
         """Stop the arm and let go of the connection. Never raises, never hangs."""
@@ -72,8 +102,8 @@ class SteppingDriver(ABC):
         """Take note of what has happened since the last poll; say why if the arm is lost."""
 
     @abstractmethod
-    def _begin(self, step: Step) -> None:
-        """Begin a step that is not a look."""
+    def _begin(self, step: ArmStep) -> None:
+        """Begin a step."""
 
     @abstractmethod
     def _advance(self) -> StepEnd | None:
@@ -127,7 +157,7 @@ class SteppingDriver(ABC):
             return Outcome(run.action, Status.FAILED, reason)
         if run.planned and not run.steps:
             self._run = None
-            return Outcome(run.action, Status.SUCCEEDED)
+            return Outcome(run.action, Status.SUCCEEDED, run.note)
         return Outcome(run.action, Status.RUNNING)
 
     def stop(self) -> None:
@@ -145,20 +175,48 @@ class SteppingDriver(ABC):
         step = run.steps[0]
         if isinstance(step, Look):
             return self._look(run, step, anchors)
+        if isinstance(step, GiveUp):
+            return step.reason
         ended = self._advance()
         if ended is None:
-            holding = isinstance(step, MoveJoints | MoveLinear) and step.holding
-            return self._check_hold() if holding else ""
-        if not ended.reason:
+            return self._check_hold() if is_holding(step) else ""
+        return self._after(run, step, ended, anchors)
+
+    def _after(
+        self, run: _Run, step: ArmStep, ended: StepEnd, anchors: Mapping[str, Anchor]
+    ) -> str:
+        """Go on after a step, or come away from where one by force has failed."""
+        felt = ended.felt
+        if felt is not None:
+            run.note = felt.words
+        if isinstance(step, Grip) and step.close:
+            run.regrips = False
+        by_force = isinstance(step, Press | Turn)
+        if ended.reason and not (by_force and self.state().gripped):
+            return ended.reason
+        if isinstance(step, Turn):
+            felt = felt or Felt()
+            turned = (run.progress.turned_rad or 0.0) + felt.turned_rad
+            run.note = f"{abs(turned) / (2 * math.pi):.2f} turns in all, the last {felt.words}"
+            stalled = felt.stalled or bool(step.failure and ended.reason)
+            failure = step.failure or ended.reason
+            run.plan_anew(
+                step.then,
+                Progress(looked=True, turned_rad=turned, stalled=stalled, failure=failure),
+            )
+        elif isinstance(step, Press) and ended.reason:
+            run.plan_anew(step.then, replace(run.progress, looked=True, failure=ended.reason))
+        else:
             run.steps.popleft()
             self._begin_next(run)
-        return ended.reason
+            return ""
+        self._carry_on(run, anchors)
+        return run.refusal
 
     def _look(self, run: _Run, look: Look, anchors: Mapping[str, Anchor]) -> str:
         run.looks_left -= 1
         if run.looks_left <= 0:
-            run.commands, run.planned, run.looked = look.then, False, True
-            run.steps.clear()
+            run.plan_anew(look.then, replace(run.progress, looked=True))
             self._carry_on(run, anchors)
         return run.refusal
 
@@ -174,10 +232,11 @@ class SteppingDriver(ABC):
             return
         try:
             steps = plan_motion(
-                run.commands, anchors, self.state(), self._config, self._parts, looked=run.looked
+                run.commands, anchors, self.state(), self._config, self._parts, run.progress
             )
         except MotionError as error:
-            run.refusal = str(error)
+            failure = run.progress.failure
+            run.refusal = f"{failure}; then: {error}" if failure else str(error)
             return
         run.steps.extend(steps)
         run.planned = True
@@ -189,5 +248,6 @@ class SteppingDriver(ABC):
         step = run.steps[0]
         if isinstance(step, Look):
             run.looks_left = step.cycles
-        else:
+        elif not isinstance(step, GiveUp):
+            run.regrips = run.regrips or (isinstance(step, Grip) and step.again)
             self._begin(step)

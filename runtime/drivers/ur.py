@@ -2,47 +2,26 @@
 
 This side never waits for the robot: it sends orders to the process that holds the connection
 (`runtime.drivers.ur_worker`), and reads what that process reports. When the process falls silent
-it is ended, and the driver is dead: whoever starts it anew has looked at the robot first.
+it is ended, and the driver is dead, until somebody who has looked at the robot says otherwise.
 
 A software stop is not an emergency stop. Keep the button within reach.
 """
 
 from __future__ import annotations
 
-import contextlib
-import os
-import time
-from collections import deque
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from multiprocessing import get_context
 from typing import Final, Self
 
-from runtime.addresses import answers, is_loopback
+from runtime.addresses import is_loopback
 from runtime.config import RobotConfig
 from runtime.drivers.driver import ArmState
 from runtime.drivers.stepping import StepEnd, SteppingDriver
-from runtime.drivers.steps import Look, Step
-from runtime.drivers.ur_link import (
-    Begin,
-    Close,
-    Ended,
-    Lost,
-    Order,
-    Ready,
-    Silence,
-    StateBoard,
-    Stop,
-)
-from runtime.drivers.ur_worker import work
-from runtime.errors import ControllerError, DriverError
+from runtime.drivers.steps import ArmStep
+from runtime.drivers.ur_process import WorkerProcess
+from runtime.errors import DriverError
 from runtime.parts import PartModel
 
-_CLOSE_WITHIN_S: Final = 1.5
-_KILL_WITHIN_S: Final = 0.5
-_SETTLE_S: Final = 0.1  # after a stop was ordered, states older than this say nothing of it
-_LONGEST_BLINK_S: Final = 0.25  # cycles are shorter, unless this process was kept waiting
-_WORDS_KEPT: Final = 20
 _STAND_IN_SILENCE_S: Final = 2.0
 _STAND_IN_WATCHDOG_HZ: Final = 1.0
 
@@ -69,64 +48,39 @@ class UrDriver(SteppingDriver):
         *,
         log: Callable[[str], None] | None = None,
     ) -> None:
-        config = _patient(config) if is_loopback(address) else config
-        super().__init__(config, parts)
+        super().__init__(_patient(config) if is_loopback(address) else config, parts)
         self._address: Final = address
         self._log = log or _discard
-        self._words: deque[str] = deque(maxlen=_WORDS_KEPT)
-        self._half_a_line = b""
-        self._number = 0
-        self._ended: Ended | None = None
-        self._ready = False
-        self._dead = ""
         self._closed = False
-        self._stopped_at = 0.0
-        self._silence = Silence(_LONGEST_BLINK_S)
-        self._board = StateBoard()
-        context = get_context("spawn")
-        self._orders, theirs = context.Pipe()
-        self._said, say = context.Pipe(duplex=False)
-        os.set_blocking(self._said.fileno(), False)
-        self._worker = context.Process(
-            target=work,
-            args=(theirs, say, self._board, address, config),
-            name=f"ur-driver-{address}",
-            daemon=True,
-        )
-        self._worker.start()
-        theirs.close()
-        say.close()
-        try:
-            self._await_ready(address)
-        except BaseException:
-            self.close()
-            raise
+        self._worker, _ = self._start_worker(recover=False)
 
     def state(self) -> ArmState:
         """Give the newest measured state; see `Driver.state`."""
-        dead = self._notice()
-        if dead:
-            raise DriverError(dead)
-        published = self._board.read()
-        assert published is not None, "the worker publishes a state before it is ready"
-        return published.arm
+        lost = self._notice()
+        if lost:
+            raise DriverError(lost)
+        return replace(self._worker.newest().arm, regrips=self._regrips)
+
+    def recover(self) -> str:
+        """Make the arm fit to be driven again; see `Recoverable`.
+
+        A protective stop is unlocked, once the controller allows it; the interrupted program is
+        ended before that, and nothing is ever played. All that was checked before the first move
+        is checked anew.
+        """
+        if self._closed:
+            raise DriverError("the driver was closed")
+        self._run = None
+        self._log("recovery, at the operator's word")
+        self._worker.close()
+        self._worker, done = self._start_worker(recover=True)
+        return f"{done}; the arm can be driven again" if done else "the arm can be driven again"
 
     def close(self) -> None:
         """Stop the arm, end the program on the controller, and let go. Never raises or hangs."""
-        if self._closed:
-            return
         self._run = None
-        if not self._dead:
-            self._send(Close())
-            self._worker.join(_CLOSE_WITHIN_S)
-            self._listen()
-        self._end_worker()
-        self._dead = self._dead or "the driver was closed"
         self._closed = True
-        self._orders.close()
-        self._said.close()
-        with contextlib.suppress(ValueError):  # not even killing has ended it
-            self._worker.close()
+        self._worker.close()
 
     def __enter__(self) -> Self:
         return self
@@ -134,116 +88,30 @@ class UrDriver(SteppingDriver):
     def __exit__(self, *_exception: object) -> None:
         self.close()
 
-    def _begin(self, step: Step) -> None:
-        if isinstance(step, Look):
-            return
-        self._number += 1
-        self._words.clear()
-        self._log(f"order {self._number}: {step}")
-        self._send(Begin(self._number, step))
+    def _begin(self, step: ArmStep) -> None:
+        self._worker.begin(step)
 
     def _advance(self) -> StepEnd | None:
-        ended = self._ended
-        if ended is None or ended.number != self._number:
-            return None
-        self._log(f"order {ended.number}: {ended.reason or 'done'}")
-        return StepEnd(self._quoting(ended.reason) if ended.reason else "")
+        ended = self._worker.ended()
+        return None if ended is None else StepEnd(ended.reason, ended.felt)
 
     def _halt(self) -> None:
-        if not self._dead:
-            self._log("stop")
-            self._number += 1
-            self._stopped_at = time.monotonic()
-            self._send(Stop())
+        self._worker.stop()
 
     def _at_rest(self) -> bool:
-        published = self._board.read()
-        return (
-            published is not None
-            and not published.moving
-            and published.at_s > self._stopped_at + _SETTLE_S
-        )
+        return self._worker.at_rest()
 
     def _notice(self) -> str:
-        if not self._dead:
-            self._look_for_loss()
-        return self._dead
+        return self._worker.lost()
 
-    def _look_for_loss(self) -> None:
-        self._listen()
-        self._take_reports()
-        if not self._worker.is_alive():
-            reason = (
-                f"the process that drives the arm ended by itself (status {self._worker.exitcode})"
-            )
-            if not answers(self._address):
-                reason += f"; the controller at {self._address} no longer answers"
-            self._die(reason)
-        published = self._board.read()
-        if not self._ready or published is None:
-            return
-        silent = self._silence.since(published.at_s, time.monotonic())
-        if silent > self._config.watch.worker_silence_s:
-            self._die(
-                f"the connection to the controller has hung for {silent:.1f} s; the controller's "
-                "watchdog stops the arm. See that the controller is on and reachable, then start "
-                "this program again"
-            )
-
-    def _await_ready(self, address: str) -> None:
-        wait_s = self._config.watch.connect_s
-        deadline = time.monotonic() + wait_s
-        while not (self._notice() or self._ready) and time.monotonic() < deadline:
-            self._orders.poll(0.05)
-        if self._ready and not self._dead:
-            return
-        self._die(f"{address}: the controller did not accept the connection within {wait_s:g} s")
-        raise ControllerError(self._dead)
-
-    def _take_reports(self) -> None:
-        with contextlib.suppress(EOFError, ConnectionError):  # its end is noticed as such
-            while self._orders.poll(0):
-                match self._orders.recv():
-                    case Ready(version):
-                        self._ready = True
-                        self._log(f"connected, PolyScope {version}")
-                    case Ended() as ended:
-                        self._ended = ended
-                    case Lost(reason):
-                        self._die(reason, at_once=False)
-
-    def _send(self, order: Order) -> None:
-        with contextlib.suppress(ConnectionError):  # a dead process is noticed as such
-            self._orders.send(order)
-
-    def _die(self, reason: str, *, at_once: bool = True) -> None:
-        """Be dead from now on. A process that reported the loss itself may finish its farewell."""
-        if self._dead:
-            return
-        self._listen()
-        self._dead = self._quoting(reason)
-        self._log(f"lost: {self._dead}")
-        if at_once:
-            self._end_worker()
-
-    def _end_worker(self) -> None:
-        if self._worker.is_alive():
-            self._worker.kill()
-            self._worker.join(_KILL_WITHIN_S)
-
-    def _listen(self) -> None:
-        """Take in what the client has written to its standard streams."""
-        with contextlib.suppress(BlockingIOError, OSError):
-            while chunk := os.read(self._said.fileno(), 65536):
-                *lines, self._half_a_line = (self._half_a_line + chunk).split(b"\n")
-                for line in lines:
-                    words = line.decode(errors="replace").strip()
-                    if words:
-                        self._words.append(words)
-                        self._log(f"client: {words}")
-
-    def _quoting(self, reason: str) -> str:
-        return f'{reason} (the client said: "{self._words[-1]}")' if self._words else reason
+    def _start_worker(self, *, recover: bool) -> tuple[WorkerProcess, str]:
+        """Give a process that holds the arm, and what was released for that."""
+        worker = WorkerProcess(self._address, self._config, self._log, recover=recover)
+        try:
+            return worker, worker.await_ready()
+        except BaseException:
+            worker.close()
+            raise
 
 
 def _patient(config: RobotConfig) -> RobotConfig:

@@ -7,46 +7,48 @@ says counts.
 
 from __future__ import annotations
 
-import contextlib
 import math
-import re
 import time
 from typing import Any, Final
 
 import numpy as np
-from dashboard_client import DashboardClient
 from rtde_control import RTDEControlInterface
 from rtde_io import RTDEIOInterface
 from rtde_receive import RTDEReceiveInterface
 
 from runtime.config import RobotConfig
 from runtime.drivers.driver import ArmState
+from runtime.drivers.force import Push
 from runtime.drivers.limits import tcp_matrix
 from runtime.drivers.steps import MoveJoints, MoveLinear
+from runtime.drivers.ur_dashboard import check_controller
 from runtime.drivers.ur_link import Silence
+from runtime.drivers.ur_safety import ONLY_ON_YOUR_WORD, stop_in_words
 from runtime.errors import ControllerError
 from runtime.kinematics import Joints, Pose, pose_to_matrix
 
-SUPPORTED: Final = "3.9 to 3.15 and 5.6 or newer"
-
 _TOOL_BIT: Final = 16  # of the digital inputs and outputs, the first on the tool connector
 _PLAYING: Final = 2  # runtime_state
-_SAFE: Final = (1, 2)  # safety_mode: normal, reduced
-_SAFETY: Final = {
-    3: "a protective stop: find its cause, wait 5 s, unlock it on the teach pendant",
-    4: "recovery mode: move the arm back within its limits on the teach pendant",
-    5: "a safeguard stop: clear the safeguarded space and reset the safeguard",
-    6: "an emergency stop: clear the danger, release the button, power the arm on again",
-    7: "an emergency stop: clear the danger, release the button, power the arm on again",
-    8: "a safety violation: restart the safety system on the teach pendant",
-    9: "a safety fault: restart the safety system on the teach pendant",
-}
-_AFTERWARDS: Final = ", then start this program again; it recovers nothing by itself"
 _STILL_RAD_S: Final = 0.005
 _KICK_EVERY_S: Final = 0.02
 _LONGEST_BLINK_S: Final = 0.02  # looks are 4 ms apart, unless this process was kept waiting
 _MODEL_WITHIN_M: Final = 0.02  # factory calibration moves a real arm by a few millimetres
 _TCP_WITHIN_S: Final = 2.0
+_FORCE_FRAME_AS_GIVEN: Final = 2  # of force mode's types, the one that does not turn the frame
+
+_REFUSALS: Final = {
+    "already in use": (
+        "another program or a fieldbus (EtherNet/IP, PROFINET, MODBUS) holds the controller's RTDE "
+        "registers; end that program, or disable the fieldbus on the teach pendant"
+    ),
+    "remote control": (
+        "switch the controller to remote control on the teach pendant (the icon at the upper right)"
+    ),
+    "control script": (
+        "the controller did not start the control program; see its log on the teach pendant"
+    ),
+}
+"""What the client says when it is refused, and what is to be done."""
 
 
 class UrConnection:
@@ -59,26 +61,23 @@ class UrConnection:
     def __init__(self, address: str, config: RobotConfig) -> None:
         self._address: Final = address
         self._config: Final = config
-        self.version: Final = _check_dashboard(address, config)
+        self.version: Final = check_controller(address, config)
         self._receive: Any = _construct(RTDEReceiveInterface, address, "state stream")
         if not self._receive.isConnected():
             raise ControllerError(f"{address}: the controller sends no state stream (RTDE)")
         if unsafe := self._safety():
             raise ControllerError(f"{address}: {unsafe}")
-        began = (self._receive.getTimestamp(), time.monotonic())
+        self._pushing = False
         self._io: Any = _construct(RTDEIOInterface, address, "digital outputs")
         self._control: Any = _construct(RTDEControlInterface, address, "control program")
-        robot_s, wall_s = (
-            now - then
-            for now, then in zip(
-                (self._receive.getTimestamp(), time.monotonic()), began, strict=True
+        if self._receive.getRuntimeState() != _PLAYING:
+            raise ControllerError(
+                f"{address}: the control program was uploaded but does not run; see the "
+                "controller's log on the teach pendant"
             )
-        )
         self._control.setTcp(list(config.tcp))
         self.set_payload(config.payload.gripper_kg)
-        # A stand-in may run faster than real time; the watchdog is meant in real time.
-        pace = max(1, round(robot_s / wall_s))
-        self._control.setWatchdog(config.watch.watchdog_hz / pace)
+        self._control.setWatchdog(config.watch.watchdog_hz)
         self._kicked_at = time.monotonic()
         self._silence = Silence(_LONGEST_BLINK_S)
         self._await_tool()
@@ -92,6 +91,7 @@ class UrConnection:
             bool(self._receive.getActualDigitalOutputBits() & bits << gripper.output),
             bool(self._receive.getActualDigitalInputBits() & bits << gripper.input),
             self.timestamp_s(),
+            self.wrench()[2],
         )
 
     def joints(self) -> Joints:
@@ -118,19 +118,20 @@ class UrConnection:
         where = f"the controller at {self._address}"
         if not (self._receive.isConnected() and self._control.isConnected()):
             return (
-                f"the connection to {where} was lost; see that it is on and reachable{_AFTERWARDS}"
+                f"the connection to {where} was lost; see that it is on and reachable"
+                f"{ONLY_ON_YOUR_WORD}"
             )
         if unsafe := self._safety():
             return unsafe
         if silent_s > self._config.watch.silence_s:
             return (
                 f"{where} has sent no new state for {silent_s:.2f} s; "
-                f"see that it is on and reachable{_AFTERWARDS}"
+                f"see that it is on and reachable{ONLY_ON_YOUR_WORD}"
             )
         if self._receive.getRuntimeState() != _PLAYING:
             return (
                 f"the control program on {where} was stopped; see that nobody else uses the arm"
-                f"{_AFTERWARDS}"
+                f"{ONLY_ON_YOUR_WORD}"
             )
         return ""
 
@@ -164,26 +165,65 @@ class UrConnection:
 
     def stop(self) -> None:
         """Bring the arm to a standstill."""
-        self._control.stopJ(self._config.speeds.stop_deceleration)
+        if self._pushing:
+            self.end_push()
+        else:
+            self._control.stopJ(self._config.speeds.stop_deceleration)
+
+    def wrench(self) -> Pose:
+        """Give the measured force and torque on the tool, N and Nm, base frame."""
+        fx, fy, fz, mx, my, mz = self._receive.getActualTCPForce()
+        return fx, fy, fz, mx, my, mz
+
+    def zero_force(self) -> None:
+        """Ask the controller to take the force it measures now for none."""
+        self._control.zeroFtSensor()
+
+    def push(self, push: Push, frame: Pose) -> None:
+        """Order force mode, or order it anew; it goes on until `end_push` or `stop`.
+
+        Args:
+            push: Where to yield, with what force and how fast.
+            frame: Its axes, in the base frame.
+        """
+        self._pushing = True
+        self._control.forceMode(
+            list(frame),
+            [int(axis) for axis in push.compliant],
+            [float(force) for force in push.wrench],
+            _FORCE_FRAME_AS_GIVEN,
+            [float(speed) for speed in push.speeds],
+        )
+        self._kicked_at = time.monotonic()
+
+    def end_push(self) -> None:
+        """End force mode and brake."""
+        self._pushing = False
+        self._control.forceModeStop()
 
     def set_gripper(self, *, close: bool) -> None:
         """Switch the gripper's output."""
         self._io.setToolDigitalOut(self._config.gripper.output, close)
 
-    def set_payload(self, mass_kg: float) -> None:
-        """Tell the controller what hangs on the flange."""
-        self._control.setPayload(mass_kg, list(self._config.payload.centre_of_gravity_m))
+    def set_payload(
+        self, mass_kg: float, centre_of_gravity_m: tuple[float, float, float] | None = None
+    ) -> None:
+        """Tell the controller what hangs on the flange.
+
+        Args:
+            mass_kg: All of it.
+            centre_of_gravity_m: From the flange; None is that of the gripper.
+        """
+        centre = centre_of_gravity_m or self._config.payload.centre_of_gravity_m
+        self._control.setPayload(mass_kg, [float(v) for v in centre])
 
     def end_program(self) -> None:
         """End the program on the controller, so that nothing can resume it."""
         self._control.stopScript()
 
     def _safety(self) -> str:
-        mode = self._receive.getSafetyMode()
-        if mode in _SAFE:
-            return ""
-        what = _SAFETY.get(mode, f"safety mode {mode}: see the teach pendant")
-        return f"the arm is in {what}{_AFTERWARDS}"
+        words = stop_in_words(self._receive.getSafetyMode())
+        return f"the arm is in {words}{ONLY_ON_YOUR_WORD}" if words else ""
 
     def _await_tool(self) -> None:
         """Check that the arm out there is the one configured: joints and tool must agree."""
@@ -195,23 +235,12 @@ class UrConnection:
                 return
             if time.monotonic() > deadline:
                 raise ControllerError(
-                    f"{self._address}: the tool is {off:.3f} m from where a {self._config.model} "
-                    "would have it; is this the arm that the configuration describes?"
+                    f"{self._address}: model: the tool is {off:.3f} m from where a "
+                    f"{self._config.model} would have it; is this the arm that the configuration "
+                    "describes?"
                 )
             self.kick()
             time.sleep(0.005)
-
-
-def end_program_by_dashboard(address: str) -> None:
-    """End the program on the controller without the client's control connection, if it listens.
-
-    After a protective stop a program is only paused: "play" on the pendant would go on with the
-    interrupted move.
-    """
-    with contextlib.suppress(RuntimeError):
-        dashboard = DashboardClient(address)
-        dashboard.connect(500)
-        dashboard.stop()
 
 
 def pose_error(pose: Pose, target: Pose) -> tuple[float, float]:
@@ -221,59 +250,10 @@ def pose_error(pose: Pose, target: Pose) -> tuple[float, float]:
     return math.dist(pose[:3], target[:3]), math.acos(max(-1.0, min(1.0, cosine)))
 
 
-def check_version(text: str) -> tuple[int, int]:
-    """Refuse controllers on which the client is known to hang or crash.
-
-    Args:
-        text: What the dashboard answers to `PolyscopeVersion`.
-
-    Returns:
-        Major and minor version.
-
-    Raises:
-        ControllerError: Names the version and those that are supported.
-    """
-    match = re.search(r"(\d+)\.(\d+)", text)
-    if match is None:
-        raise ControllerError(f"the controller does not tell its version (it says {text!r})")
-    major, minor = int(match[1]), int(match[2])
-    if not ((major == 3 and 9 <= minor <= 15) or (major == 5 and minor >= 6)):
-        raise ControllerError(
-            f"PolyScope {major}.{minor} is not supported (supported: {SUPPORTED}); "
-            "update the controller"
-        )
-    return major, minor
-
-
-def _check_dashboard(address: str, config: RobotConfig) -> str:
-    """Ask version, model and power before the client is let near the controller."""
-    dashboard = DashboardClient(address)
-    try:
-        dashboard.connect(2000)
-        version = dashboard.polyscopeVersion()
-        mode = dashboard.robotmode()
-    except RuntimeError as error:
-        raise ControllerError(
-            f"{address}: no answer from a UR controller's dashboard (port 29999): {error}. "
-            "See that address and network are right and the controller is on"
-        ) from None
-    check_version(version)
-    if "RUNNING" not in mode.upper():
-        raise ControllerError(
-            f"{address}: the arm is not running ({mode}); power it on and release its brakes"
-        )
-    with contextlib.suppress(RuntimeError):  # older controllers do not tell their model
-        model = dashboard.getRobotModel().strip().lower()
-        if model.startswith("ur") and model.rstrip("e") != config.model.rstrip("e"):
-            raise ControllerError(
-                f"{address}: this is a {model.upper()}, the configuration is for a {config.model}"
-            )
-    dashboard.disconnect()
-    return str(version)
-
-
 def _construct(interface: Any, address: str, what: str) -> Any:
     try:
         return interface(address)
     except RuntimeError as error:
-        raise ControllerError(f"{address}: cannot open the {what}: {error}") from None
+        said = str(error)
+        to_do = next((words for sign, words in _REFUSALS.items() if sign in said.lower()), said)
+        raise ControllerError(f"{address}: cannot open the {what}: {to_do}") from None

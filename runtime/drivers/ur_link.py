@@ -13,7 +13,7 @@ from multiprocessing.sharedctypes import RawArray
 from typing import Final, TypeAlias
 
 from runtime.drivers.driver import ArmState
-from runtime.drivers.steps import Grip, MoveJoints, MoveLinear
+from runtime.drivers.steps import ArmStep, Felt
 
 _READS: Final = 1000  # a reader meets a writer at work once in a while, never so often in a row
 
@@ -23,7 +23,7 @@ class Begin:
     """Order: carry a step out, and report under this number how it ended."""
 
     number: int
-    step: MoveJoints | MoveLinear | Grip
+    step: ArmStep
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,9 +38,10 @@ class Close:
 
 @dataclass(frozen=True, slots=True)
 class Ready:
-    """Report: the connection stands, states are being published."""
+    """Report: the connection stands, states are being published; `done` says what was released."""
 
     version: str
+    done: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +50,7 @@ class Ended:
 
     number: int
     reason: str
+    felt: Felt | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,7 +118,7 @@ class StateBoard:
     again.
     """
 
-    _FIELDS: Final = 17
+    _FIELDS: Final = 18
 
     def __init__(self) -> None:
         self._cells = RawArray("d", self._FIELDS + 2)
@@ -131,6 +133,7 @@ class StateBoard:
             float(arm.gripper_closed),
             float(arm.gripped),
             arm.timestamp_s,
+            arm.force_n,
             float(moving),
             time.monotonic(),
         ]
@@ -148,8 +151,10 @@ class StateBoard:
             return None
         if last == 0:
             return None
-        a, b, c, d, e, f, x, y, z, rx, ry, rz, closed, gripped, timestamp, moving, at = values
+        a, b, c, d, e, f, x, y, z, rx, ry, rz, closed, gripped, timestamp, force, moving, at = (
+            values
+        )
         arm = ArmState(
-            (a, b, c, d, e, f), (x, y, z, rx, ry, rz), closed > 0, gripped > 0, timestamp
+            (a, b, c, d, e, f), (x, y, z, rx, ry, rz), closed > 0, gripped > 0, timestamp, force
         )
         return Published(arm, moving > 0, at)

@@ -12,12 +12,29 @@ import math
 import os
 import signal
 import time
+from collections.abc import Callable
 from multiprocessing.connection import Connection
 
 from runtime.config import RobotConfig
+from runtime.drivers.force import ForceMotion
 from runtime.drivers.limits import joint_distance
-from runtime.drivers.steps import Grip, MoveJoints, MoveLinear, duration_s, grip_failure
-from runtime.drivers.ur_connection import UrConnection, end_program_by_dashboard, pose_error
+from runtime.drivers.pressing import Pressing
+from runtime.drivers.steps import (
+    ArmStep,
+    Felt,
+    Grip,
+    MoveJoints,
+    MoveLinear,
+    Press,
+    Tare,
+    Turn,
+    duration_s,
+    grip_failure,
+)
+from runtime.drivers.turning import Turning
+from runtime.drivers.ur_connection import UrConnection, pose_error
+from runtime.drivers.ur_dashboard import end_program, release
+from runtime.drivers.ur_force import ForceSensor, Guard, carry_out
 from runtime.drivers.ur_link import Begin, Close, Ended, Lost, Order, Ready, StateBoard, Stop
 from runtime.errors import ControllerError, DriverError
 
@@ -25,6 +42,7 @@ _PERIOD_S = 0.004
 _OUTPUT_WITHIN_S = 1.0
 _STANDSTILL_WITHIN_S = 1.5
 _ANGLE_TOLERANCE_RAD = 0.01
+_BEGIN_WITHIN_S = 1.0  # of this machine's time, in which an order passes through the client
 
 
 class _CalledOffError(Exception):
@@ -32,7 +50,12 @@ class _CalledOffError(Exception):
 
 
 def work(
-    orders: Connection, said: Connection, board: StateBoard, address: str, config: RobotConfig
+    orders: Connection,
+    said: Connection,
+    board: StateBoard,
+    address: str,
+    config: RobotConfig,
+    recover: bool,  # noqa: FBT001 - goes through the start of a process
 ) -> None:
     """Connect, then carry orders out until told to close, or until the arm is lost.
 
@@ -42,6 +65,7 @@ def work(
         board: States are published here.
         address: The controller.
         config: The robot.
+        recover: The operator has given the word: release a protective stop first.
     """
     # The driver decides what Ctrl-C means; this process must live to stop the arm.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -51,14 +75,14 @@ def work(
     os.set_blocking(said.fileno(), False)
     status = 0
     try:
-        connection = UrConnection(address, config)
-        worker = _Worker(connection, orders, board, config)
+        done = release(address) if recover else ""
+        worker = _Worker(UrConnection(address, config), orders, board, config)
         try:
-            worker.run()
+            worker.run(done)
         except DriverError as error:
             orders.send(Lost(str(error)))
             status = 1
-            end_program_by_dashboard(address)
+            end_program(address)
     except ControllerError as error:
         orders.send(Lost(str(error)))
         status = 1
@@ -78,20 +102,21 @@ class _Worker:
         self._orders = orders
         self._board = board
         self._config = config
+        self._sensor = ForceSensor(connection)
 
-    def run(self) -> None:
+    def run(self, done: str = "") -> None:
         self._watch()
-        self._orders.send(Ready(self._arm.version))
+        self._orders.send(Ready(self._arm.version, done))
         while True:
             match self._next_order():
                 case Begin() as order:
                     try:
-                        reason = self._carry_out(order.step)
+                        reason, felt = self._carry_out(order.step)
                     except _CalledOffError:
                         continue
                     # The state must be out before the report that relies on it.
                     self._watch()
-                    self._orders.send(Ended(order.number, reason))
+                    self._orders.send(Ended(order.number, reason, felt))
                 case Stop():
                     self._stop()
                 case Close():
@@ -128,6 +153,10 @@ class _Worker:
 
     def _halt(self) -> None:
         self._arm.stop()
+        self._settle()
+
+    def _settle(self) -> None:
+        """Wait for the standstill."""
         deadline = time.monotonic() + _STANDSTILL_WITHIN_S
         while not self._arm.stands_still():
             self._watch(moving=True)
@@ -135,18 +164,43 @@ class _Worker:
                 raise DriverError("the arm does not come to a standstill; use the emergency stop")
             time.sleep(_PERIOD_S)
 
-    def _carry_out(self, step: MoveJoints | MoveLinear | Grip) -> str:
-        """Carry a step out; give the reason if it failed."""
+    def _carry_out(self, step: ArmStep) -> tuple[str, Felt | None]:
+        """Carry a step out; give the reason if it failed, and what a step by force has felt."""
         if self._orders.poll(0):
             raise _CalledOffError
-        if isinstance(step, Grip):
-            return self._grip(step)
+        match step:
+            case Grip():
+                return self._grip(step), None
+            case Tare():
+                return self._sensor.zero(self._wait), None
+            case Press():
+                reason = self._off_start(step)
+                return (reason, None) if reason else self._by_force(Pressing, step)
+            case Turn():
+                return self._by_force(Turning, step)
+            case _:
+                return self._off_start(step) or self._go(step), None
+
+    def _off_start(self, step: MoveJoints | MoveLinear | Press) -> str:
         off = joint_distance(step.start, self._arm.joints())
-        if off > self._config.watch.start_tolerance_rad:
-            return (
-                f"the arm stands {off:.3f} rad from where the motion was planned to start "
-                f"(at most {self._config.watch.start_tolerance_rad:g})"
-            )
+        if off <= self._config.watch.start_tolerance_rad:
+            return ""
+        return (
+            f"the arm stands {off:.3f} rad from where the motion was planned to start "
+            f"(at most {self._config.watch.start_tolerance_rad:g})"
+        )
+
+    def _by_force(
+        self, controller: Callable[..., ForceMotion], step: Press | Turn
+    ) -> tuple[str, Felt | None]:
+        """Carry a step by force out, and let the arm come to rest."""
+        motion = controller(step, self._config, 1 / self._arm.speed_fraction())
+        finish = carry_out(motion, self._arm, self._sensor, self._wait)
+        self._settle()
+        return finish.reason, finish.felt
+
+    def _go(self, step: MoveJoints | MoveLinear) -> str:
+        """Move, unless the arm is there already; judge the end by what is measured."""
         if self._miss(step):
             try:
                 reason = self._move(step)
@@ -163,21 +217,32 @@ class _Worker:
         # Whoever runs an arm for the first time turns the slider down.
         planned = duration_s(step, self._config) / self._arm.speed_fraction()
         # Counted on the controller's clock: it says how long the arm has moved.
-        deadline = (
-            self._arm.timestamp_s() + watch.deadline_factor * planned + watch.deadline_margin_s
-        )
+        allowed = watch.deadline_factor * planned + watch.deadline_margin_s
+        deadline = self._arm.timestamp_s() + allowed
         replaced = self._arm.move(step)
+        begin_by = time.monotonic() + _BEGIN_WITHIN_S
+        guard = Guard(self._sensor, self._config.force.most_n)
+        guarded = isinstance(step, MoveLinear) and step.guarded
         begun = False
         while True:
             self._wait()
+            if guarded and (reason := guard.trips()):
+                return reason
             number, running = self._arm.operation()
             # Right after the order the old operation's end still stands in the stream.
-            begun = begun or number != replaced
+            if not begun and number != replaced:
+                begun, deadline = True, self._arm.timestamp_s() + allowed
             if begun and not running and self._arm.stands_still():
                 return ""
-            if self._arm.timestamp_s() > deadline:
-                problem = "was not finished" if begun else "was not begun by the controller"
-                return f"a move planned to take {planned:.2f} s {problem} in time"
+            if self._arm.timestamp_s() <= deadline:
+                continue
+            if begun:
+                return f"a move planned to take {planned:.2f} s was not finished in time"
+            if time.monotonic() > begin_by:
+                return (
+                    f"a move planned to take {planned:.2f} s was not begun by the controller in "
+                    "time"
+                )
 
     def _miss(self, step: MoveJoints | MoveLinear) -> str:
         """Say by how much the arm misses a step's target; empty if it is there."""
@@ -210,5 +275,5 @@ class _Worker:
             if time.monotonic() > give_up:
                 return grip_failure(step)
             self._wait()
-        self._arm.set_payload(step.payload_kg)
+        self._arm.set_payload(step.payload_kg, step.centre_of_gravity_m)
         return ""

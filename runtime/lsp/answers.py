@@ -46,6 +46,7 @@ _SYMBOL_KINDS: Mapping[EntryKind, types.SymbolKind] = MappingProxyType(
         EntryKind.CONCEPT: types.SymbolKind.Class,
         EntryKind.SKILL: types.SymbolKind.Method,
         EntryKind.ATTACHMENT: types.SymbolKind.Event,
+        EntryKind.CONTRADICTION: types.SymbolKind.Event,
         EntryKind.TASK: types.SymbolKind.Object,
         EntryKind.GOAL: types.SymbolKind.Object,
         EntryKind.TEST: types.SymbolKind.Boolean,

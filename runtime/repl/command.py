@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from enum import Enum, auto
 from typing import TYPE_CHECKING
 
-from icarus_lite.language.reading.explanations import closest
+from icarus_lite.language.wording import closest
 from runtime.errors import UsageError
 
 if TYPE_CHECKING:

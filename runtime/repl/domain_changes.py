@@ -18,6 +18,7 @@ def domain_changes(before: Domain, after: Domain) -> Iterator[str]:
         ("concept", _heads(before.concepts), _heads(after.concepts)),
         ("skill", _heads(before.skills), _heads(after.skills)),
         ("attachment", _heads(before.attachments), _heads(after.attachments)),
+        ("contradiction", _heads(before.contradictions), _heads(after.contradictions)),
         ("task", _heads(before.tasks), _heads(after.tasks)),
     ):
         gone = Counter(old) - Counter(new)

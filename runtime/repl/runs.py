@@ -10,7 +10,8 @@ from icarus_lite import Action, Agent, DecisionKind, Outcome, Percept, Status
 from icarus_lite.trace import Frame, cycle_record, read_frames
 
 if TYPE_CHECKING:
-    from runtime.loop import CycleReport, LoopResult
+    from runtime.cycle_report import CycleReport
+    from runtime.loop import LoopResult
 
 
 class LiveRun(Protocol):

@@ -65,6 +65,15 @@ def test_it_goes_on_under_its_own_name():
     assert "cover-2" not in anchors
 
 
+def test_it_gets_its_name_back_when_its_first_anchor_was_given_up():
+    anchoring = Anchoring(PARAMETERS)
+    anchoring.update([at(0.5)])  # too short to be sure of it
+    for _ in range(12):
+        anchors = anchoring.update([at(0.9)])
+    assert [anchor.name for anchor in anchors] == ["cover"]
+    assert anchors[0].position == (0.9, 0.0, 0.0)
+
+
 def test_two_that_are_both_seen_stay_two():
     anchoring = Anchoring(PARAMETERS)
     for _ in range(8):

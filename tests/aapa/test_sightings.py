@@ -58,6 +58,18 @@ def test_what_has_been_moved_is_not_averaged(old, squared, parents):
     assert new.box == NEAR
 
 
+def test_what_is_half_hidden_does_not_move_a_sure_anchor():
+    half = Detection("cone", NEAR, score=0.8)
+    sure, parameters = replace(OLD, confidence=1.0), {"position_gain": 0.25, "sure_score": 0.9}
+    assert sightings(**parameters).of_old(sure, half, 16.0).box == OLD.box
+    whole = Detection("cone", NEAR, score=0.95)
+    assert sightings(**parameters).of_old(sure, whole, 16.0).box == (101.0, 100.0, 121.0, 120.0)
+    unsure = replace(OLD, confidence=0.9)
+    assert sightings(**parameters).of_old(unsure, half, 16.0).box == (101.0, 100.0, 121.0, 120.0)
+    carried = sightings({"cone-1": "hand"}, **parameters).of_old(sure, half, 16.0)
+    assert carried.box == NEAR
+
+
 def test_what_comes_back_nearby_is_averaged():
     old = replace(OLD, status=AnchorStatus.OCCLUDED)
     new = sightings(position_gain=0.25).of_old(old, Detection("cone", NEAR), 1600.0)
@@ -90,7 +102,9 @@ def test_a_place_is_the_middle_of_a_box_or_a_position():
     assert in_space.centre == (1, 2, 3)
 
 
-@pytest.mark.parametrize("parameters", [{}, {"position_gain": 0.5}, {"space": "base", "tau": 0.1}])
+@pytest.mark.parametrize(
+    "parameters", [{}, {"position_gain": 0.5}, {"sure_score": 0.6}, {"space": "base", "tau": 0.1}]
+)
 def test_many_pairs_become_what_each_of_them_becomes(parameters):
     detections = [
         Detection("cone", BOX),

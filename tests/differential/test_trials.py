@@ -156,7 +156,9 @@ def test_a_network_with_a_fault_is_caught_and_the_trial_made_small(
 ) -> None:
     update = Network.update
     monkeypatch.setattr(
-        Network, "update", lambda self, delta: update(self, replace(delta, withdrawn=()))
+        Network,
+        "update",
+        lambda self, delta, review=None: update(self, replace(delta, withdrawn=()), review),
     )
     trials_ = (draw_trial(seed, cycles=6) for seed in range(100))
     found = ((trial, failure_of(trial)) for trial in trials_)

@@ -40,6 +40,6 @@ def record(gearbox: Path, seed: str) -> str:
 
 def test_two_hash_seeds_give_the_same_trace_byte_for_byte(gearbox: Path) -> None:
     first = record(gearbox, "1")
-    assert "(insert plug case)" in first
+    assert "(screw-in plug case)" in first
     assert '"kind": "achieved"' in first
     assert first == record(gearbox, "2")

@@ -239,7 +239,8 @@ class TestRun:
         done = icarus(*run, trace, "--json")
         assert (done.returncode, done.stderr) == (0, "")
         result = json.loads(done.stdout)
-        assert set(result) == {"task", "robot", "outcome", "reason", "cycles", "actions", "trace"}
+        keys = {"task", "robot", "outcome", "reason", "cycles", "actions", "trace", "recoveries"}
+        assert set(result) == keys
         assert (result["task"], result["robot"], result["outcome"]) == ("1.1", "ur5", "achieved")
         assert [(a["action"], a["status"]) for a in result["actions"]] == [
             ("(pick-up hand1 hubcover)", "succeeded"),
@@ -263,7 +264,7 @@ class TestRun:
     def test_an_unknown_task_lists_those_there_are(self, gearbox: Path) -> None:
         done = icarus("run", gearbox, "--task", "1.7", "--json")
         assert (done.returncode, done.stdout) == (2, "")
-        assert "has no task 1.7; did you mean 1.1? (tasks: 1.1" in done.stderr
+        assert "has no task 1.7; did you mean 1.4? (tasks: 1.1, 1.2" in done.stderr
 
     def test_a_skill_that_no_driver_offers_is_refused_before_anything_moves(
         self, tmp_path: Path

@@ -9,12 +9,12 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from runtime.checked_yaml import read
 from runtime.config import (
     DATA,
     MAX_JOINT_SPEED,
     MAX_TOOL_SPEED,
     RobotConfig,
-    _read,
     load_robot,
 )
 from runtime.errors import ConfigError
@@ -127,6 +127,88 @@ def test_a_configuration_can_be_hashed_and_sent_to_another_process():
                 "or the watchdog (20 Hz) acts first"
             ),
         ),
+        (
+            {"gripper__opening_m": 85},
+            (
+                "gripper.opening_m: 85; expected a number from 0.005 to 0.3 m; "
+                "did you mean 0.085 m (85 mm)?"
+            ),
+        ),
+        (
+            {"look_joints": [158.7, -113.2, 87.1, -63.9, -90.0, -111.3]},
+            (
+                "look_joints: 158.7; expected a number from -6.28319 to 6.28319 rad; "
+                "did you mean 2.77 rad (158.7 degrees)?"
+            ),
+        ),
+        (
+            {"tcp": [0.0, 0.0, 150.0, 0.0, 0.0, 0.0]},
+            ("tcp: 150.0; expected a number from -0.5 to 0.5 m; did you mean 0.15 m (150 mm)?"),
+        ),
+        (
+            {"tcp": [0.0, 0.0, 0.15, 0.0, 0.0, 90]},
+            (
+                "tcp: 90; expected a number from -3.14159 to 3.14159 rad; "
+                "did you mean 1.571 rad (90 degrees)?"
+            ),
+        ),
+        (
+            {"speeds__tool": 150},
+            (
+                "speeds.tool: 150; expected a number from 0.005 to 0.25 m/s; "
+                "did you mean 0.15 m/s (150 mm/s)?"
+            ),
+        ),
+        (
+            {"payload__gripper_kg": 900},
+            (
+                "payload.gripper_kg: 900; expected a number from 0 to 10 kg; "
+                "did you mean 0.9 kg (900 g)?"
+            ),
+        ),
+        (
+            {"gripper__close_time_s": 400},
+            (
+                "gripper.close_time_s: 400; expected a number from 0.05 to 5 s; "
+                "did you mean 0.4 s (400 ms)?"
+            ),
+        ),
+        ({"speeds__tool": 0}, "speeds.tool: 0; expected a number from 0.005 to 0.25 m/s"),
+        ({"speeds__joint": -0.5}, "speeds.joint: -0.5; expected a number from 0.01 to 1 rad/s"),
+        ({"force__most_n": 0}, "force.most_n: 0; expected a number from 10 to 120 N"),
+        (
+            {"force__most_n": 15},
+            (
+                "force.descent_n: 8; expected at most half of force.most_n (15 N), which ends "
+                "whatever is done by force"
+            ),
+        ),
+        (
+            {"force__search_n": 9.0},
+            (
+                "force.search_n: 9; expected at most force.descent_n (8 N), or a part climbs out "
+                "of every chamfer that leads it in"
+            ),
+        ),
+        ({"force__torqe_nm": 1}, "force.torqe_nm: unknown key; did you mean 'torque_nm'?"),
+        (
+            {"look_joints": [0.3, -1.97585, 1.520418, -1.115364, -1.570796, -1.943176]},
+            (
+                "look_joints: they bring the tool of a ur5 to x = -0.235 m; "
+                "expected within workspace.x, 0.15 to 0.75 m"
+            ),
+        ),
+        (
+            {"look_joints": [2.769213, -1.97585, 1.520418, -1.115364, -1.2, -1.943176]},
+            (
+                "look_joints: the tool of a ur5 would point 21 degrees away from straight down; "
+                "expected at most 5 (are they this arm's angles, in rad?)"
+            ),
+        ),
+        (
+            {"look_joints": [2.769213, -1.97585, 1.520418, -1.115364, -1.570796, -6.2]},
+            ("look_joints: -6.2; expected at most workspace.joint_limit_rad, 6.1 rad either way"),
+        ),
         ({"gripper": 3}, "gripper: expected keys with values, got 3"),
         ({"heights__transit_m": None}, "heights.transit_m: missing"),
         ({"speeds": None}, "speeds: missing"),
@@ -139,7 +221,7 @@ def test_a_configuration_can_be_hashed_and_sent_to_another_process():
             {"xyzzy": 1},
             (
                 "xyzzy: unknown key; expected model, look_joints, tcp, look_cycles, speeds, "
-                "workspace, payload, gripper, heights, watch"
+                "workspace, payload, gripper, heights, force, watch"
             ),
         ),
     ],
@@ -148,7 +230,17 @@ def test_a_wrong_value_is_named_with_what_is_allowed(write, changes, message):
     file = write(**changes)
     with pytest.raises(ConfigError) as caught:
         load_robot(file)
-    assert str(caught.value) == f"{file}: {message}"
+    place, said = str(caught.value).split(": ", 1)
+    assert said == message
+    name, _, line = place.rpartition(":")
+    if not name:  # what is missing at the top has no line
+        assert place == str(file)
+        assert message.endswith(": missing")
+        return
+    assert name == str(file)
+    key = message.partition(":")[0]
+    written = file.read_text(encoding="utf-8").splitlines()[int(line) - 1].strip()
+    assert written.partition(":")[0] in key.split(".")
 
 
 def test_an_unknown_name_lists_the_shipped_ones():
@@ -164,7 +256,7 @@ def test_an_unknown_name_lists_the_shipped_ones():
 def test_a_file_that_is_no_configuration_is_refused(tmp_path, content):
     file = tmp_path / "robot.yaml"
     file.write_bytes(content)
-    with pytest.raises(ConfigError, match=r"robot\.yaml: "):
+    with pytest.raises(ConfigError, match=r"robot\.yaml(:1)?: "):
         load_robot(file)
 
 
@@ -179,7 +271,14 @@ def test_the_caps_hold_when_a_value_is_replaced_later():
 
 def test_every_number_has_a_declared_range():
     config = load_robot("ur5")
-    for part in (config, config.speeds, config.workspace, config.heights, config.watch):
+    for part in (
+        config,
+        config.speeds,
+        config.workspace,
+        config.heights,
+        config.force,
+        config.watch,
+    ):
         for entry in dataclasses.fields(part):
             bare = entry.type in {"float", "int"}
             assert not bare, f"{type(part).__name__}.{entry.name} is not checked"
@@ -212,7 +311,7 @@ def test_any_value_gives_a_configuration_or_an_error_that_names_its_key(path, va
         place = place[key]
     place[path[-1]] = value
     try:
-        config = _read(RobotConfig, tree, "")
+        config = read(RobotConfig, tree)
     except ConfigError as error:
         names = (*path, "payload", "speeds.stop_deceleration")  # these depend on other values
         assert any(name in str(error) for name in names)  # noqa: PT017 - both ways are fine

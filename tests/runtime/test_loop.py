@@ -12,9 +12,10 @@ from aapa import Anchor, Anchoring, Camera, Detection
 from icarus_lite import Action, Agent, Outcome, Status, load_domain
 from icarus_lite.trace import TraceWriter, header, inputs_of, read_trace
 from runtime.config import load_robot
+from runtime.cycle_report import CycleReport
 from runtime.drivers import PARK, ArmState
 from runtime.errors import DriverError
-from runtime.loop import CycleReport, Loop, LoopLimits
+from runtime.loop import Loop, LoopLimits
 from runtime.run import anchoring_parameters
 
 CONFIG = load_robot("ur5")
@@ -129,7 +130,7 @@ def test_the_task_ends_with_a_second_look(gearbox: Path) -> None:
 def test_what_is_held_is_believed_though_unseen(gearbox: Path) -> None:
     reports: list[CycleReport] = []
     body = Body(polls=20)
-    assert loop(body, gearbox, observer=reports.append).run().achieved
+    assert loop(body, gearbox, observers=[reports.append]).run().achieved
     carried = [
         r for r in reports if any(str(b) == "(carried hubcover hand1)" for b in r.decision.beliefs)
     ]
@@ -161,7 +162,9 @@ def test_a_skill_that_fails_three_times_is_given_up_with_its_reason(gearbox: Pat
 
 def test_a_goal_about_something_that_is_not_there(gearbox: Path) -> None:
     body = Body()
-    result = loop(body, gearbox, Eyes(body, ["case"]), limits=LoopLimits(patience=5)).run()
+    result = loop(
+        body, gearbox, Eyes(body, ["case"]), limits=LoopLimits(patience=5, patience_s=0.0)
+    ).run()
     assert not result.achieved
     assert result.reason == "(attached hubcover case) speaks of hubcover, which is not perceived"
     assert result.cycles == 5
@@ -191,7 +194,7 @@ def test_an_interruption_stops_the_arm(gearbox: Path) -> None:
             raise KeyboardInterrupt
 
     body = Body(polls=50)
-    result = loop(body, gearbox, observer=interrupt).run()
+    result = loop(body, gearbox, observers=[interrupt]).run()
     assert (result.achieved, body.stops) == (False, 1)
     assert "interrupted by the operator" in result.reason
 

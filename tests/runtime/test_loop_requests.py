@@ -17,6 +17,7 @@ from icarus_lite.trace.replaying import replay
 from runtime.config import load_robot
 from runtime.drivers import PARK, ArmState
 from runtime.loop import Loop, LoopLimits
+from runtime.people import Nobody, People
 from runtime.run import anchoring_parameters
 from runtime.view import RunView
 
@@ -134,7 +135,9 @@ def run(human, limits=None, trace=None):
     task = DOMAIN.tasks[0]
     agent = Agent(DOMAIN, task.goals, others=task.agents)
     parameters = Anchoring(anchoring_parameters())
-    loop = Loop(agent, parameters, body, eyes, CONFIG, trace=trace, observer=observe, limits=limits)
+    loop = Loop(
+        agent, parameters, body, eyes, CONFIG, trace=trace, observers=[observe], limits=limits
+    )
     return loop.run(), body, reports
 
 
@@ -176,24 +179,29 @@ def test_without_an_answer_the_run_ends_with_the_reason():
     assert len(waits) == 21  # a cycle is a second on this arm's clock
 
 
-def test_an_arm_on_its_way_to_rest_stops_when_somebody_is_asked():
-    body, eyes, moving = Body(), Eyes(), []
+def test_an_arm_gets_out_of_the_way_before_somebody_is_asked():
+    body, eyes, asked, awaited = Body(), Eyes(), [], []
     eyes.y = -0.12
     body.polls = 12
     agent = Agent(DOMAIN, ["(touched case)", "(close-by case)"])
-    person = pushes_after(2)
+    person = pushes_after(30)
+
+    class Listener(Nobody):
+        def ask(self, action, _sentence, _anchors):
+            asked.append((str(action), body.moves, body.started[-1]))
 
     def observe(report):
-        resting = str(PARK) in body.started
-        if resting and not moving:
+        if str(PARK) in body.started and not awaited:
             eyes.y -= STEP  # it is taken away again while the arm goes back to rest
         if report.decision.request is not None:
-            moving.append((report.decision.kind, body.moves))
+            awaited.append(body.moves)
         person(report, body, eyes)
 
-    Loop(agent, Anchoring(anchoring_parameters()), body, eyes, CONFIG, observer=observe).run()
-    assert moving[0] == (DecisionKind.REQUEST, True)  # it was on its way
-    assert all(not moves for _, moves in moving[1:])  # and stopped
+    anchoring, people = Anchoring(anchoring_parameters()), People(Listener())
+    Loop(agent, anchoring, body, eyes, CONFIG, observers=[observe], people=people).run()
+    assert awaited[0]  # it was on its way, and went on
+    assert asked == [(str(PUSH), False, str(PARK))]  # and was there when it asked
+    assert not awaited[-1]
 
 
 def test_the_request_is_shown_and_recorded(tmp_path):

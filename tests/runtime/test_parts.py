@@ -80,8 +80,12 @@ def test_heights_are_converted_to_centres(tmp_path):
             "peg.seats[0].into: 'pge' is no other part; expected one of .",
         ),
         (
+            {"seats": [{"into": "peg", "at": [0, 0, 0], "presn": 3}]},
+            "peg.seats[0]: unknown key 'presn'; did you mean 'press_n'?.",
+        ),
+        (
             {"seats": [{"into": "peg"}]},
-            "peg.seats[0]: {'into': 'peg'} has the wrong keys; expected 'into' and 'at'.",
+            "peg.seats[0]: the key 'at' is missing.",
         ),
     ],
 )
@@ -113,3 +117,53 @@ def test_bad_yaml_is_a_config_error(tmp_path, text):
 def test_a_missing_file_is_a_config_error(tmp_path):
     with pytest.raises(ConfigError, match="cannot be read"):
         load_parts(tmp_path / "none.yaml")
+
+
+BLOCK = {**PEG, "solids": [["box", 0.1, 0.1, 0.06, 0, 0, 0]]}
+
+
+def test_how_a_part_goes_in_is_read_and_has_defaults(tmp_path):
+    seats = [
+        {"into": "block", "at": [0, 0, 0.05]},
+        {
+            "into": "block",
+            "at": [0, 0, 0.05],
+            "press_n": 30,
+            "thread": {"pitch_m": 0.001, "turns": 5},
+        },
+    ]
+    first, second = load_parts(write(tmp_path, {"peg": {**PEG, "seats": seats}, "block": BLOCK}))[
+        "peg"
+    ].seats
+    assert (first.press_n, first.clearance_m, first.chamfer_m) == (12.0, 0.0006, 0.003)
+    assert (first.engages_m, first.thread) == (0.0, None)
+    assert second.press_n == 30
+    assert second.thread is not None
+    assert second.thread.depth_m == pytest.approx(0.005)
+
+
+@pytest.mark.parametrize(
+    ("more", "text"),
+    [
+        ({"press_n": -1}, "peg.seats[0].press_n: -1 is out of range; expected 0 to 100."),
+        ({"clearance_m": 0.6}, "clearance_m: 0.6 is out of range; expected 0.0001 to 0.005."),
+        ({"thread": {"pitch_m": 0.0015}}, "peg.seats[0].thread: the key 'turns' is missing."),
+        ({"thread": {"pitch_m": 1.5, "turns": 4}}, "pitch_m: 1.5 is out of range"),
+        ({"thread": 4}, "peg.seats[0].thread: 4 found; expected names with values."),
+    ],
+)
+def test_a_seat_with_wrong_values_is_explained(tmp_path, more, text):
+    seats = [{"into": "block", "at": [0, 0, 0], **more}]
+    path = write(tmp_path, {"peg": {**PEG, "seats": seats}, "block": BLOCK})
+    with pytest.raises(ConfigError) as caught:
+        load_parts(path)
+    assert text in str(caught.value)
+
+
+def test_in_the_gearbox_the_plug_is_screwed_in_and_the_lid_takes_a_press():
+    parts = load_parts()
+    thread = parts["plug"].seats[0].thread
+    assert thread is not None
+    assert (thread.pitch_m, thread.turns) == (0.0015, 4)
+    assert parts["casingtop"].seats[0].press_n == 30
+    assert [name for name, part in parts.items() if any(s.thread for s in part.seats)] == ["plug"]

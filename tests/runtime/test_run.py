@@ -14,7 +14,7 @@ from icarus_lite import load_domain
 from icarus_lite.trace import Trace, read_trace
 from runtime.config import load_robot
 from runtime.controller.process import ControllerProcess
-from runtime.loop import CycleReport
+from runtime.cycle_report import CycleReport
 from runtime.run import RunOptions, RunResult, run_task
 
 pytestmark = pytest.mark.robot

@@ -7,8 +7,8 @@ from rich.console import Console
 from aapa import Anchor, AnchorStatus
 from icarus_lite import Action, Agent, Outcome, Percept, Status
 from icarus_lite.language.reading.reader import parse_domain
+from runtime.cycle_report import CycleReport
 from runtime.drivers import ArmState
-from runtime.loop import CycleReport
 from runtime.view import RunView
 
 DOMAIN, _ = parse_domain("""(percepts (hand) (object))

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
+from pathlib import Path
 from typing import Final
 
 from aapa.errors import AnchoringError
@@ -14,7 +15,9 @@ from aapa.lacater.models.anchored import AnchoredSnitch, lacater_parameters
 from aapa.lacater.models.heuristic import ClosestObject
 from aapa.lacater.models.last_seen import LastSeen
 from aapa.lacater.models.model import Model
+from aapa.lacater.models.network import SHIPPED, Network, network_named
 from aapa.lacater.models.plus import BeyondAapa, Ideas
+from aapa.lacater.models.refined import Refined, shipped_weights
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +60,10 @@ def _plus(match: re.Match[str]) -> Model:
     return Model(match[0], partial(BeyondAapa, ideas), asdict(ideas))
 
 
+def _refined(match: re.Match[str]) -> Model:
+    return Model(match[0], lambda cast: Refined(Ideas(), shipped_weights(), cast), asdict(Ideas()))
+
+
 _TAU = r"(?P<tau>[0-9]{1,9}(?:\.[0-9]{1,9})?)"
 
 FAMILIES: Final = (
@@ -69,8 +76,9 @@ FAMILIES: Final = (
         r"aapa-plus(?P<camera>-camera)?(?P<less>(?:-without-[a-z-]+?)*)",
         _plus,
     ),
+    Family("aapa-refined", "aapa-refined", _refined),
 )
-"""All kinds of models. TAU is in squared px, IDEA a switch of `plus.ideas`."""
+"""All models that go frame by frame. TAU is in squared px, IDEA a switch of `plus.ideas`."""
 
 PAPER_MODELS: Final = (
     "last-seen",
@@ -84,7 +92,7 @@ PAPER_MODELS: Final = (
 
 
 def model_named(name: str) -> Model:
-    """Give the model of a name such as "aapa-6500".
+    """Give the model of a name such as "aapa-6500", one that goes frame by frame.
 
     Raises:
         AnchoringError: There is no such model; the text says which there are.
@@ -93,18 +101,42 @@ def model_named(name: str) -> Model:
         match = re.fullmatch(family.matches, name)
         if match is not None:
             return family.build(match)
-    patterns = [family.pattern for family in FAMILIES]
+    if name in SHIPPED:
+        raise AnchoringError(
+            f"{name} looks at whole videos, and cannot be asked frame by frame; "
+            "`icarus cater evaluate` runs it"
+        )
+    patterns = [*(family.pattern for family in FAMILIES), *SHIPPED]
     near = difflib.get_close_matches(name, [*PAPER_MODELS, *patterns], n=1)
     hint = f"did you mean {near[0]!r}? " if near else ""
     raise AnchoringError(f"there is no model {name!r}; {hint}known are {', '.join(patterns)}")
 
 
-def models_named(names: Sequence[str]) -> tuple[Model, ...]:
+def models_named(
+    names: Sequence[str], weights: Mapping[str, Path] | None = None
+) -> tuple[Model | Network, ...]:
     """Give the models of several names, each once, in the order given.
 
+    Args:
+        names: Of models that go frame by frame, or of networks.
+        weights: The file of a network's weights, by its name. What is named here is a network,
+            whatever it is called.
+
     Raises:
-        AnchoringError: There is no such model, or no name at all.
+        AnchoringError: There is no such model, or no name at all; a network's weights are not
+            there, or are of no model that was asked for.
     """
     if not names:
         raise AnchoringError("no model is named; for example last-seen,aapa-6500")
-    return tuple(model_named(name) for name in dict.fromkeys(names))
+    known = dict(weights or {})
+    for name in known:
+        if name not in names:
+            raise AnchoringError(
+                f"there are weights for {name!r}, which is not among the models: {', '.join(names)}"
+            )
+    return tuple(
+        network_named(name, known.get(name))
+        if name in known or name in SHIPPED
+        else model_named(name)
+        for name in dict.fromkeys(names)
+    )

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Literal, Protocol
+from typing import Literal, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -76,6 +76,16 @@ class Tracker(Protocol):
         Returns:
             Where the snitch is, seen or hidden; None only before it was seen for the first time.
         """
+        ...
+
+
+@runtime_checkable
+class SureTracker(Tracker, Protocol):
+    """A tracker that says how sure it is of its last answer."""
+
+    @property
+    def confidence(self) -> float:
+        """In [0, 1]."""
         ...
 
 

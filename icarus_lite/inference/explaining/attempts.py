@@ -20,9 +20,7 @@ from icarus_lite.errors import InferenceError
 from icarus_lite.inference.explaining.conjunctions import (
     Attempt,
     Checked,
-    Literal,
     Standing,
-    bind_literal,
     in_order,
     is_positive,
     variables_in,
@@ -32,6 +30,7 @@ from icarus_lite.inference.explaining.margins import Margin, margin_of
 from icarus_lite.inference.expressions import Compiled, compile_test
 from icarus_lite.inference.facts import Bindings
 from icarus_lite.inference.matching import Evaluator, variables_of
+from icarus_lite.inference.supports import Literal, bind_literal
 from icarus_lite.inference.views import Row
 from icarus_lite.language.syntax import Call, Condition
 from icarus_lite.symbols import Belief, Value

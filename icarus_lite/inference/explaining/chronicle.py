@@ -7,6 +7,7 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from icarus_lite.inference.attachment import ATTACHED
+from icarus_lite.inference.contradictions import Withdrawal
 from icarus_lite.inference.facts import Bindings, match, resolve, unify
 from icarus_lite.inference.supports import bind_pattern
 from icarus_lite.language.syntax import Atom, AttachmentRule, Domain
@@ -47,7 +48,7 @@ class Chronicle:
 
     __slots__ = (
         "_actions", "_gone", "_last_seen", "_most", "_over", "_periods", "_present", "_size",
-        "cycle", "first",
+        "_withdrawn", "cycle", "first",
     )  # fmt: skip
 
     def __init__(self, changes_kept: int | None = None) -> None:
@@ -61,6 +62,7 @@ class Chronicle:
         self._present: frozenset[str] = frozenset()
         self._last_seen: dict[str, int] = {}
         self._gone: dict[int, frozenset[str]] = {}
+        self._withdrawn: dict[int, tuple[Withdrawal, ...]] = {}
 
     def record(
         self,
@@ -69,6 +71,7 @@ class Chronicle:
         removed: Iterable[Belief],
         outcomes: Sequence[Outcome] = (),
         present: Collection[str] = (),
+        withdrawn: Sequence[Withdrawal] = (),
     ) -> None:
         """Add a cycle.
 
@@ -78,6 +81,7 @@ class Chronicle:
             removed: Beliefs that are no longer held.
             outcomes: What became of actions since the cycle before.
             present: The names of all objects perceived.
+            withdrawn: What was withdrawn, for something contradicts it.
         """
         ended = tuple(removed)
         for belief in ended:
@@ -89,6 +93,8 @@ class Chronicle:
             held.setdefault(belief, []).append(Period(cycle))
         if outcomes:
             self._actions[cycle] = tuple(outcomes)
+        if withdrawn:
+            self._withdrawn[cycle] = tuple(withdrawn)
         now = frozenset(present)
         gone = self._present - now
         if gone:
@@ -96,7 +102,7 @@ class Chronicle:
             self._last_seen.update(dict.fromkeys(gone, self.cycle))
         self._present = now
         self.cycle = cycle
-        size = len(ended) + len(outcomes) + len(gone)
+        size = len(ended) + len(outcomes) + len(gone) + len(withdrawn)
         if size:
             self._over.append((cycle, ended, size))
             self._size += size
@@ -112,6 +118,7 @@ class Chronicle:
                 del held[belief]
         self._actions.pop(cycle, None)
         self._gone.pop(cycle, None)
+        self._withdrawn.pop(cycle, None)
         self._size -= size
         self.first = cycle + 1
 
@@ -145,13 +152,19 @@ class Chronicle:
         """Give the names of the objects that were perceived until just before a cycle."""
         return self._gone.get(cycle, frozenset())
 
+    def withdrawals(self) -> Iterator[tuple[int, Withdrawal]]:
+        """Give all that was withdrawn, with the cycles in which it was, earliest first."""
+        for cycle, found in self._withdrawn.items():
+            for each in found:
+                yield cycle, each
+
     def last_perceived(self, name: str) -> int | None:
         """Give the last cycle in which an object was perceived; None if it is, or never was."""
         return None if name in self._present else self._last_seen.get(name)
 
 
 def what_ended(belief: Belief, period: Period, chronicle: Chronicle, domain: Domain) -> str:
-    """Say what ended a belief, from the actions that had succeeded when it was gone.
+    """Say what ended a belief: a contradiction, or an action that had succeeded when it was gone.
 
     Effects do not end what concepts define, so that no action is blamed for that. Empty where no
     action and no vanished object accounts for it, as with a derived belief whose reasons no
@@ -160,6 +173,9 @@ def what_ended(belief: Belief, period: Period, chronicle: Chronicle, domain: Dom
     if period.last is None:
         return ""
     cycle = period.last + 1
+    for when, each in chronicle.withdrawals():
+        if when == cycle and each.belief == belief:
+            return f"withdrawn in cycle {cycle}, because {each.reason}"
     derived = any(clause.head.predicate == belief.predicate for clause in domain.concepts)
     for outcome in chronicle.outcomes(cycle):
         if outcome.status is Status.SUCCEEDED and (not derived or belief.predicate == ATTACHED):

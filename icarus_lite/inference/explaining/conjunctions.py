@@ -5,16 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import TypeAlias
 
 from icarus_lite.inference.facts import Bindings
 from icarus_lite.inference.matching import variables_of
-from icarus_lite.inference.supports import bind_pattern
-from icarus_lite.language.syntax import Call, Condition, Constant, Expression, Variable
+from icarus_lite.inference.supports import Literal
+from icarus_lite.language.syntax import Call, Condition
 from icarus_lite.symbols import Belief, Value
-
-Literal: TypeAlias = Condition | Call
-"""One condition or test of a conjunction."""
 
 
 class Standing(StrEnum):
@@ -93,25 +89,6 @@ def in_order(
         order += ready
         waiting = [test for test in waiting if test not in ready]
     return (*order, *waiting, *(c for c in conditions if c.negated))
-
-
-def bind_literal(literal: Literal, bindings: Bindings) -> Literal:
-    """Fill the values of an attempt into a condition or test; free variables stay."""
-    if isinstance(literal, Call):
-        return _bind_call(literal, bindings)
-    return Condition(bind_pattern(literal.atom, bindings), literal.negated, literal.span)
-
-
-def _bind_call(call: Call, bindings: Bindings) -> Call:
-    return Call(call.function, tuple(_bind(each, bindings) for each in call.args), call.span)
-
-
-def _bind(expression: Expression, bindings: Bindings) -> Expression:
-    if isinstance(expression, Call):
-        return _bind_call(expression, bindings)
-    if isinstance(expression, Variable) and expression.name in bindings:
-        return Constant(bindings[expression.name], expression.span)
-    return expression
 
 
 def is_positive(literal: Literal) -> bool:

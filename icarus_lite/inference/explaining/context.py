@@ -9,13 +9,13 @@ from functools import cached_property
 from icarus_lite.inference.belief_supports import BeliefSupports
 from icarus_lite.inference.engine import BeliefState
 from icarus_lite.inference.explaining.chronicle import Chronicle
-from icarus_lite.inference.explaining.present import PresentFacts
 from icarus_lite.inference.facts import FactStore
 from icarus_lite.inference.matching import Evaluator
+from icarus_lite.inference.present import PresentFacts
 from icarus_lite.inference.supports import Support
 from icarus_lite.language.checking.vocabulary import Origin, Vocabulary, vocabulary
-from icarus_lite.language.reading.explanations import closest
 from icarus_lite.language.syntax import Atom, Constant, Domain
+from icarus_lite.language.wording import closest
 from icarus_lite.symbols import Belief, Percept, Value, format_value
 
 

@@ -48,6 +48,11 @@ def why_not_document(answer: WhyNot) -> Document:
             )
             for each in answer.past
         ],
+        refused=[
+            {"belief": str(each.withdrawal.belief), "cycle": each.cycle}
+            | {"because": list(each.withdrawal.because)}
+            for each in answer.refused
+        ],
         reports=[
             _filled(
                 cycle=each.cycle,

@@ -10,8 +10,8 @@ from icarus_lite.inference.explaining.context import Context
 from icarus_lite.inference.explaining.fitting import fit
 from icarus_lite.inference.supports import bind_pattern
 from icarus_lite.language.checking.vocabulary import Definition, Origin
-from icarus_lite.language.reading.explanations import closest, listing
 from icarus_lite.language.syntax import Atom, AttachmentRule, Span
+from icarus_lite.language.wording import closest, listing
 
 
 @dataclass(frozen=True, slots=True)

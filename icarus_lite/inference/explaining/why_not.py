@@ -8,6 +8,7 @@ from itertools import islice
 from typing import Final
 
 from icarus_lite.errors import FrameError
+from icarus_lite.inference.contradictions import Withdrawal
 from icarus_lite.inference.explaining.attempts import nearest_attempt
 from icarus_lite.inference.explaining.chronicle import Period, unify_call, what_ended
 from icarus_lite.inference.explaining.conjunctions import Attempt
@@ -18,6 +19,7 @@ from icarus_lite.inference.explaining.lookup import matching
 from icarus_lite.inference.explaining.reasons import Blocked, Missing, Reason, because
 from icarus_lite.inference.explaining.skills import Readiness, readiness
 from icarus_lite.inference.explaining.sources import Source, impossible, sources
+from icarus_lite.inference.facts import match
 from icarus_lite.inference.supports import bind_pattern
 from icarus_lite.language.fragments import parse_conditions
 from icarus_lite.language.syntax import Atom, ConceptClause, Condition, Constant, SkillClause
@@ -126,6 +128,18 @@ class Report:
 
 
 @dataclass(frozen=True, slots=True)
+class Refused:
+    """A belief that was asserted and withdrawn in the same cycle, so that it was never held."""
+
+    cycle: int
+    withdrawal: Withdrawal
+
+    def __str__(self) -> str:
+        each = self.withdrawal
+        return f"{each.belief} was asserted in cycle {self.cycle} but not believed: {each.reason}"
+
+
+@dataclass(frozen=True, slots=True)
 class WhyNot:
     """Why a belief is not held, or why a skill does not start.
 
@@ -141,6 +155,7 @@ class WhyNot:
         clauses: How far each clause gets.
         sources: The actions that have it among their effects.
         past: When it was believed before, and what ended that.
+        refused: When it was asserted and withdrawn at once, latest first.
         reports: What became of actions that would have made it, latest first.
     """
 
@@ -155,6 +170,7 @@ class WhyNot:
     clauses: tuple[ClauseVerdict, ...] = ()
     sources: tuple[Source, ...] = ()
     past: tuple[Past, ...] = ()
+    refused: tuple[Refused, ...] = ()
     reports: tuple[Report, ...] = ()
 
     @property
@@ -180,7 +196,8 @@ class WhyNot:
                 yield from (f"{inner}  {b.belief}  {b.because}" for b in self.reason.blockers)
         for verdict in self.clauses:
             yield from verdict.lines(inner)
-        yield from (f"{inner}{line}" for line in (*self.sources, *self.past, *self.reports))
+        told = (*self.past, *self.refused)
+        yield from (f"{inner}{line}" for line in (*self.sources, *told, *self.reports))
 
     def _opening(self) -> str:
         asked, when = self.asked, f"in cycle {self.cycle}"
@@ -261,6 +278,7 @@ def _belief(asked: Condition, context: Context, depth: int) -> WhyNot:
         clauses=tuple(_verdicts(atom, context.domain.concepts, context, depth)),
         sources=origins,
         past=_past(atom, context),
+        refused=tuple(islice(_refused(atom, context), NEAREST)),
         reports=tuple(_reports([each.action for each in origins if each.asserts], context)),
     )
 
@@ -344,6 +362,15 @@ def _past(atom: Atom, context: Context) -> tuple[Past, ...]:
         Past(belief, periods, what_ended(belief, periods[-1], chronicle, context.domain))
         for belief, periods in ended[:NEAREST]
     )
+
+
+def _refused(atom: Atom, context: Context) -> Iterator[Refused]:
+    """Give what matches and was asserted, but withdrawn at once, latest first."""
+    chronicle = context.chronicle
+    for cycle, each in reversed(tuple(chronicle.withdrawals())):
+        held = any(period.last == cycle - 1 for period in chronicle.periods(each.belief))
+        if not held and match(atom, each.belief, {}) is not None:
+            yield Refused(cycle, each)
 
 
 def _reports(actions: list[Atom], context: Context) -> Iterator[Report]:

@@ -12,10 +12,27 @@ objects lie in columns (`tables`), are seen by patterns and paired by numeric ke
 (`asking`, `proofs`, `ways`).
 """
 
-from icarus_lite.inference.network.changes import Budget, Changes, Delta
-from icarus_lite.inference.network.compiled import CompiledDomain, compile_domain
-from icarus_lite.inference.network.history import ForgottenError
-from icarus_lite.inference.network.network import Network
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from icarus_lite._on_use import imported_on_use
+
+if TYPE_CHECKING:
+    from icarus_lite.inference.network.changes import Budget, Changes, Delta
+    from icarus_lite.inference.network.compiled import CompiledDomain, compile_domain
+    from icarus_lite.inference.network.history import ForgottenError
+    from icarus_lite.inference.network.network import Network
+
+_HOMES = {
+    "Budget": "changes",
+    "Changes": "changes",
+    "CompiledDomain": "compiled",
+    "Delta": "changes",
+    "ForgottenError": "history",
+    "Network": "network",
+    "compile_domain": "compiled",
+}
 
 __all__ = [
     "Budget",
@@ -26,3 +43,5 @@ __all__ = [
     "Network",
     "compile_domain",
 ]
+
+__getattr__ = imported_on_use(__name__, _HOMES)

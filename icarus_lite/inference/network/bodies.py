@@ -16,7 +16,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from icarus_lite.inference.matching import variables_of
-from icarus_lite.inference.network.kernels import PairSide, compile_pair
+from icarus_lite.inference.network import kernels
 from icarus_lite.inference.network.relations import Facts, Pairs, Relation, View
 from icarus_lite.inference.network.vocabulary import Vocabulary
 from icarus_lite.language.functions import FUNCTIONS
@@ -241,7 +241,7 @@ class _Reader:
         read = frozenset(v for call in calls for v in variables_of(call))
         one, other = _side(left, read), _side(right, read)
         path = self._vocabulary.evaluator.path
-        kernel = compile_pair(one, other, calls, bool(apart), path=path)
+        kernel = kernels.compile_pair(one, other, calls, bool(apart), path=path)
         if kernel is None:
             return None
         self._take([*left_own, *right_own, *numeric, *apart])
@@ -260,12 +260,12 @@ class _Reader:
         return [Literal(pairs, (names[0], names[1]), frozenset((0, 1))), *literals]
 
 
-def _side(atom: Atom, read: frozenset[str]) -> PairSide:
+def _side(atom: Atom, read: frozenset[str]) -> kernels.PairSide:
     name = atom.args[0]
     attributes = tuple(
         (t.name, a) for a, t in atom.attributes if isinstance(t, Variable) and t.name in read
     )
-    return PairSide(name.name if isinstance(name, Variable) else None, attributes)
+    return kernels.PairSide(name.name if isinstance(name, Variable) else None, attributes)
 
 
 def _facts(atom: Atom) -> tuple[Facts, tuple[Term, ...]]:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from icarus_lite.inference.matching import Evaluator, Functions
+from icarus_lite.inference.network import kernels
 from icarus_lite.inference.network.changes import Budget
 from icarus_lite.inference.network.design import Design, design_of, place_of
 from icarus_lite.inference.network.generation.module import Module, generate
 from icarus_lite.inference.network.groups import groups_of
-from icarus_lite.inference.network.kernels import GroupProgram
 from icarus_lite.inference.network.network import Network
 from icarus_lite.inference.network.plans import ClausePlan, plans_of
 from icarus_lite.inference.network.vocabulary import Vocabulary
@@ -30,7 +30,7 @@ class Compiled:
     design: Design
     module: Module
     places: tuple[str, ...]
-    groups: tuple[GroupProgram, ...]
+    groups: tuple[kernels.GroupProgram, ...]
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from icarus_lite.errors import FrameError, InferenceError
 from icarus_lite.inference.network.asking import Asking
 from icarus_lite.inference.network.attributed import ASSERTED, PERCEIVED
 from icarus_lite.inference.network.base import Base, Entry
 from icarus_lite.inference.network.changes import Budget, Changes, Delta
-from icarus_lite.inference.network.events import difference, events_of_given
+from icarus_lite.inference.network.events import difference, events_of_given, together
 from icarus_lite.inference.network.history import Event, History, Kind
 from icarus_lite.inference.network.parts import Move
 from icarus_lite.inference.network.running import Running
@@ -19,6 +19,9 @@ from icarus_lite.symbols import Belief, Percept, Value
 
 if TYPE_CHECKING:
     from icarus_lite.inference.network.compiled import CompiledDomain
+
+Review: TypeAlias = Callable[[], Iterable[Belief]]
+"""Looks at what would be believed in a cycle; gives those given beliefs that are to go."""
 
 
 class Network(Asking):
@@ -47,11 +50,12 @@ class Network(Asking):
 
     # -- telling it what has changed -----------------------------------------------------------
 
-    def update(self, delta: Delta) -> Changes:
+    def update(self, delta: Delta, review: Review | None = None) -> Changes:
         """Follow a change.
 
         Args:
             delta: What has changed since the last cycle.
+            review: See `update_snapshot`.
 
         Returns:
             The net changes of the beliefs, derived and asserted.
@@ -66,20 +70,28 @@ class Network(Asking):
         except FrameError:
             self._base.undo()
             raise
-        return self._follow()
+        return self._follow(review=review)
 
-    def update_snapshot(self, percepts: Iterable[Percept], asserted: Iterable[Belief]) -> Changes:
+    def update_snapshot(
+        self,
+        percepts: Iterable[Percept],
+        asserted: Iterable[Belief],
+        review: Review | None = None,
+    ) -> Changes:
         """Follow whatever is different from the last cycle, found here.
 
         Args:
             percepts: Everything perceived now.
             asserted: All beliefs given now.
+            review: Is called once all has been followed, when the network can be asked what would
+                be believed. The given beliefs that it names are withdrawn within the same cycle.
 
         Raises:
             FrameError: see `update`.
-            InferenceError: see `update`.
+            InferenceError: see `update`. What the review raises is raised; nothing has changed
+                then.
         """
-        return self.update(self._base.difference(percepts, asserted))
+        return self.update(self._base.difference(percepts, asserted), review)
 
     def move(
         self,
@@ -127,7 +139,7 @@ class Network(Asking):
     def _concepts(self) -> Mapping[str, tuple[str, ...]]:
         return self._running.compiled.design.vocabulary.attributes
 
-    def _follow(self, moves: Sequence[Move] = ()) -> Changes:
+    def _follow(self, moves: Sequence[Move] = (), review: Review | None = None) -> Changes:
         base = self._base
         self._watch.start()
         form = self._needed_form() if base.touched else self._form
@@ -135,15 +147,39 @@ class Network(Asking):
             events = self._begin_in(form)
         else:
             events = self._go_on(moves)
-        if base.touched:
+        is_given = bool(base.touched)
+        if review is not None:
+            events = self._reviewed(review, events)
+        if is_given or base.touched:
             events += events_of_given(base, self._running.heads)
         self._history.add(events, base.settle())
         self.cycle += 1
         cycle = self.cycle
         return Changes(cycle, lambda: self._changes(cycle))
 
-    def _go_on(self, moves: Sequence[Move]) -> list[Event]:
+    def _reviewed(self, review: Review, events: list[Event]) -> list[Event]:
+        """Let somebody look at what has been inferred, and take back what does not stand up."""
+        try:
+            withdrawn = tuple(review())
+        except BaseException:
+            self._restore()
+            raise
+        if not withdrawn:
+            return events
+        self._base.touched.clear()
+        self._base.give((), withdrawn)
+        found = self._go_on((), events)
+        return [] if self.cycle < 0 else found
+
+    def _go_on(self, moves: Sequence[Move], before: Sequence[Event] = ()) -> list[Event]:
         """Let the network follow; begin from scratch where it meets what no cycle shows.
+
+        Args:
+            moves: Objects of which only some attributes have changed.
+            before: What has become of the beliefs in this cycle already.
+
+        Returns:
+            What has become of them in the whole cycle.
 
         While rules are told of changes one after the other, a test may be asked about a state
         that is neither that of before nor that of now. If it fails, the new state decides, loaded
@@ -158,7 +194,7 @@ class Network(Asking):
                 else:
                     given += self._ranks(entry)
         try:
-            return self._running.update(objects, given, moves)
+            return together(before, self._running.update(objects, given, moves))
         except BudgetError:
             self._restore()
             raise
@@ -166,10 +202,10 @@ class Network(Asking):
             self._watch.rest()
             with self._base.undone():
                 self._load()
-            before = self._concluded()
+            earlier = self._concluded()
             self._watch.start()
             self._load_or_restore()
-            return difference(before, self._concluded())
+            return difference(earlier, self._concluded())
         except BaseException:
             self._restore()
             raise
@@ -269,5 +305,6 @@ class Network(Asking):
         other.cycle, other._form = cycle, self._form
         other._history, other._base = history, base
         if cycle >= 0:
+            other._watch.rest()
             other._load()
         return other

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 
-from icarus_lite.inference.network.kernels import Change, PairKernel
-from icarus_lite.inference.network.kernels.matrix import MatrixRelation
+from icarus_lite.inference.network import kernels
 from icarus_lite.inference.network.tables import Objects
 from icarus_lite.symbols import Value
 
@@ -32,7 +31,7 @@ class PairStore:
 
     __slots__ = ("_known_left", "_known_right", "holds", "left", "relation", "right")
 
-    def __init__(self, kernel: PairKernel, left: Objects, right: Objects) -> None:
+    def __init__(self, kernel: kernels.PairKernel, left: Objects, right: Objects) -> None:
         self.left, self.right = left, right
         self.relation = kernel.instance(left.columns, right.columns)
         self._known_left = self._known_right = 0
@@ -47,7 +46,7 @@ class PairStore:
         left_places, right_places = self.left.places, self.right.places
         relation = self.relation
         is_pair = relation.holds
-        if isinstance(relation, MatrixRelation):
+        if isinstance(relation, kernels.MatrixRelation):
             # What `relation.holds` would say, without the call: joins ask it all the time.
             def holds_in_matrix(one: Value, other: Value) -> bool:
                 left, right = left_places.get(one), right_places.get(other)
@@ -121,7 +120,7 @@ class PairStore:
         self._known_left, self._known_right = self.left.columns.size, self.right.columns.size
         return self.named(change)
 
-    def named(self, change: Change) -> tuple[list[NamedPair], list[NamedPair]]:
+    def named(self, change: kernels.Change) -> tuple[list[NamedPair], list[NamedPair]]:
         """Give a change of the relation with the names of the objects."""
         added, removed = change
         if not added and not removed:

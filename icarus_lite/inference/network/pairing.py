@@ -7,16 +7,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
+from icarus_lite.inference.network import kernels
 from icarus_lite.inference.network.design import Design
-from icarus_lite.inference.network.kernels import GroupProgram, PairGroup
-from icarus_lite.inference.network.kernels.group import Found
-from icarus_lite.inference.network.kernels.order import OrderRelation
 from icarus_lite.inference.network.pair_stores import NamedPair, PairStore
 from icarus_lite.inference.network.parts import Functions
 from icarus_lite.inference.network.relations import Pairs
 from icarus_lite.inference.network.tables import Objects
+
+if TYPE_CHECKING:
+    from icarus_lite.inference.network.kernels.group import Found
 
 Changed: TypeAlias = Mapping[int, list[int]]
 """For each set of objects, by identity, slots that kernels have to look at."""
@@ -42,7 +43,7 @@ class _Group:
     The last entry of each says whether it is an order of keys.
     """
 
-    group: PairGroup
+    group: kernels.PairGroup
     kernels: Sequence[tuple[_Kernel, int | None, bool]]
 
 
@@ -63,7 +64,7 @@ class Pairing:
         design: Design,
         functions: Functions,
         pairs: Mapping[str, PairStore],
-        groups: Iterable[tuple[Objects, GroupProgram]],
+        groups: Iterable[tuple[Objects, kernels.GroupProgram]],
     ) -> None:
         self._kernels: list[_Kernel] = []
         self._groups: dict[int, _Group] = {}
@@ -83,9 +84,9 @@ class Pairing:
         for objects, program in groups:
             places = {member.name: n for n, member in enumerate(program.members)}
             relations = [pairs[name].relation for name in places]
-            group = PairGroup(program, relations, objects.columns)  # type: ignore[arg-type] # of these two kinds
+            group = kernels.PairGroup(program, relations, objects.columns)  # type: ignore[arg-type] # of these two kinds
             own = [
-                (kernel, places.get(name), isinstance(kernel.store.relation, OrderRelation))
+                (kernel, places.get(name), isinstance(kernel.store.relation, kernels.OrderRelation))
                 for name, kernel in zip(pairs, self._kernels, strict=True)
             ]
             self._groups[id(objects)] = _Group(group, own)

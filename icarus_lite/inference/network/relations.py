@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
-from icarus_lite.inference.network.kernels import PairKernel
+from icarus_lite.inference.network import kernels
 from icarus_lite.language.syntax import Call
 from icarus_lite.symbols import Value
 
@@ -72,7 +72,7 @@ class Pairs:
     right: View
     tests: tuple[Call, ...]
     distinct: bool
-    kernel: PairKernel = field(compare=False)
+    kernel: kernels.PairKernel = field(compare=False)
     name: str = field(default="", compare=False)
 
     @property

@@ -11,9 +11,10 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from icarus_lite.inference.network import kernels
 from icarus_lite.inference.network.design import Design
 from icarus_lite.inference.network.generation.module import Module, is_filtered
-from icarus_lite.inference.network.kernels import Columns, GroupProgram
+from icarus_lite.inference.network.kernels.columns import Columns
 from icarus_lite.inference.network.pair_stores import PairStore
 from icarus_lite.inference.network.pairing import Pairing
 from icarus_lite.inference.network.parts import Functions, Known, Move, Show
@@ -107,7 +108,9 @@ class Scene:
         "objects", "pairs", "tables",
     )  # fmt: skip
 
-    def __init__(self, design: Design, module: Module, groups: Sequence[GroupProgram] = ()) -> None:
+    def __init__(
+        self, design: Design, module: Module, groups: Sequence[kernels.GroupProgram] = ()
+    ) -> None:
         self.objects: dict[str, dict[Value, Mapping[str, Value]]] = {}
         numeric: dict[str, dict[str, None]] = {}
         kernels = [r for r in design.relations if isinstance(r, Pairs)]

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from icarus_lite.inference.network.kernels import Columns
-from icarus_lite.inference.network.kernels.columns import first_of_run
+from icarus_lite.inference.network.kernels.columns import Columns, first_of_run
 from icarus_lite.symbols import Value
 
 

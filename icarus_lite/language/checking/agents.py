@@ -10,8 +10,8 @@ import re
 from collections.abc import Iterable
 
 from icarus_lite.language.checking.report import Report
-from icarus_lite.language.reading.explanations import listing
 from icarus_lite.language.syntax import Constant, Domain, SkillClause, Variable
+from icarus_lite.language.wording import listing
 
 _IN_SENTENCE = re.compile(r"\?[\w-]+")
 

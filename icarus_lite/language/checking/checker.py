@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 
 from icarus_lite.language.checking.agents import check_agents, check_owner, known_agents
+from icarus_lite.language.checking.contradictions import check_contradictions
 from icarus_lite.language.checking.detaching import check_detaching
 from icarus_lite.language.checking.expressions import check_expressions
 from icarus_lite.language.checking.kinds import check_kinds
@@ -21,7 +22,6 @@ from icarus_lite.language.checking.vocabulary import ATTACHED, Origin, Vocabular
 from icarus_lite.language.diagnostics import Diagnostic, has_errors, in_order
 from icarus_lite.language.functions import Function, PythonFunctions, function_table
 from icarus_lite.language.percept_types import check_percept_types
-from icarus_lite.language.reading.explanations import listing
 from icarus_lite.language.syntax import (
     Atom,
     AttachmentRule,
@@ -37,6 +37,7 @@ from icarus_lite.language.syntax import (
     Span,
     Variable,
 )
+from icarus_lite.language.wording import listing
 
 
 def check_domain(
@@ -80,6 +81,9 @@ class _Check:
             self._skill(skill)
         for rule in self._domain.attachments:
             self._attachment(rule)
+        check_contradictions(self._domain, self._names, self._patterns, self._report)
+        for contradiction in self._domain.contradictions:
+            self._expressions(contradiction.tests)
         self._tasks()
         self._patterns.conditions(self._domain.goals)
         check_agents(self._domain, self._report)
@@ -295,6 +299,7 @@ def _asked(domain: Domain) -> frozenset[str]:
     """Give the predicates that some condition or goal asks for."""
     conditions = [c for concept in domain.concepts for c in concept.elements]
     conditions += [c for skill in domain.skills for c in (*skill.elements, *skill.holds)]
+    conditions += [c for clause in domain.contradictions for c in clause.elements]
     conditions += [*domain.goals, *(goal for task in domain.tasks for goal in task.goals)]
     conditions += [c for goal in domain.long_term_goals for c in (*goal.goals, *goal.relevance)]
     return frozenset(condition.atom.predicate for condition in conditions)

@@ -103,6 +103,11 @@ class _Kinds:
             known = self._variables(clause.elements, _binds(clause))
             for call in (*clause.tests, *_computed(clause)):
                 self._check_call(call, known)
+        for contradiction in self._domain.contradictions:
+            patterns = (Condition(contradiction.head), *contradiction.elements)
+            known = self._variables(patterns, ())
+            for call in contradiction.tests:
+                self._check_call(call, known)
 
     def _places(self, atom: Atom) -> Iterator[tuple[_Slot, Term]]:
         name = atom.predicate
@@ -215,6 +220,9 @@ def _written(domain: Domain) -> Iterator[Atom]:
         yield concept.head
     for skill in domain.skills:
         conditions += (*skill.elements, *skill.holds, *skill.effects)
+    for contradiction in domain.contradictions:
+        conditions += contradiction.elements
+        yield contradiction.head
     for task in domain.tasks:
         conditions += task.goals
         yield from task.init

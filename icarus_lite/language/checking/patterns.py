@@ -9,8 +9,8 @@ from icarus_lite.language.checking.report import Report
 from icarus_lite.language.checking.vocabulary import Definition, Origin, Vocabulary
 from icarus_lite.language.functions import FUNCTIONS, Function
 from icarus_lite.language.percept_types import lineages
-from icarus_lite.language.reading.explanations import listing
 from icarus_lite.language.syntax import Atom, Condition, Constant, Domain
+from icarus_lite.language.wording import listing
 
 _MOST_HOLDERS = 50
 _OPERATORS: Final = frozenset(name for name in FUNCTIONS if not name.isalpha()) | {"and", "or"}

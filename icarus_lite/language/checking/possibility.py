@@ -1,4 +1,4 @@
-"""Concepts that can never be true, skills that can never start, effects that change nothing.
+"""What can never be: concepts true, skills started, contradictions in force; idle effects.
 
 A concept can be true if some clause of it asks, positively, only for what is perceived, given,
 asserted by an effect, or can itself be true. What is left over can never be believed, whatever the
@@ -12,13 +12,20 @@ from collections.abc import Iterable, Iterator
 
 from icarus_lite.language.checking.report import Report
 from icarus_lite.language.checking.vocabulary import ATTACHED, Origin, Vocabulary
-from icarus_lite.language.syntax import Atom, ConceptClause, Condition, Domain, SkillClause
+from icarus_lite.language.syntax import (
+    Atom,
+    ConceptClause,
+    Condition,
+    Contradiction,
+    Domain,
+    SkillClause,
+)
 
 _BASE = (Origin.PERCEPT, Origin.GIVEN)
 
 
 def check_possibility(domain: Domain, names: Vocabulary, report: Report) -> None:
-    """Warn of concepts that can never be true and of skills that can never start."""
+    """Warn of concepts that can never be true, and of skills and contradictions likewise."""
     _Possibility(domain, names, report).check()
 
 
@@ -65,6 +72,8 @@ class _Possibility:
                 _spread(name, users, explained)
         for skill in self._domain.skills:
             self._check_skill(skill)
+        for clause in self._domain.contradictions:
+            self._check_contradiction(clause)
 
     def _find_impossible(self) -> dict[str, None]:
         """Give the predicates that can never be true, in the order of their definition."""
@@ -156,6 +165,23 @@ class _Possibility:
             message = f"`{name}` can never start: nothing ever attaches anything"
             hint = "say which action attaches what: (attachments ((pick-up ?hand ?obj) …))"
             self._report.warning(self._report.name_of(skill.head), "ICR041", message, hint)
+
+    def _check_contradiction(self, clause: Contradiction) -> None:
+        head, opening = clause.head, f"the contradiction of `{clause.head.predicate}` never holds: "
+        needed = {head.predicate, *self._needs(clause.elements)}
+        clash = _contradiction((Condition(head), *clause.elements))
+        if clash == head:
+            message = f"{opening}it asks for the negation of what it withdraws"
+            hint = "say what goes together with it and should not"
+        elif clash is not None:
+            message = f"{opening}it asks both for {clash} and for its negation"
+            hint = "remove one of the two, or rename a variable"
+        elif ATTACHED in self._never and ATTACHED in needed:
+            message = f"{opening}nothing ever attaches anything"
+            hint = "say which action attaches what: (attachments ((pick-up ?hand ?obj) …))"
+        else:
+            return
+        self._report.warning(self._report.name_of(head), "ICR041", message, hint)
 
 
 def _contradiction(conditions: Iterable[Condition]) -> Atom | None:

@@ -8,11 +8,11 @@ from dataclasses import dataclass, field, replace
 
 from icarus_lite.language.diagnostics import Diagnostic, Severity
 from icarus_lite.language.reading.brackets import Lines
-from icarus_lite.language.reading.explanations import closest
 from icarus_lite.language.syntax import Atom, Source, Span
+from icarus_lite.language.wording import closest
 
 _MOST_SEARCHED = 5_000  # words: what half a second is enough for
-_OPENING = re.compile(r"\([ \t\n\r\f\v]*\*?")
+_OPENING = r"\([ \t\n\r\f\v]*\*?"
 _WORD_ENDS = " \t\n\r\f\v()\"';"
 
 
@@ -57,7 +57,7 @@ class Report:
         if not atom.span.line:
             return atom.span
         text, lines = self._text(atom.span)
-        match = _OPENING.match(text, lines.offset(atom.span.line, atom.span.column))
+        match = re.compile(_OPENING).match(text, lines.offset(atom.span.line, atom.span.column))
         if match is None or not text.startswith(atom.predicate, match.end()):
             return atom.span
         return self._span(lines, match.end(), len(atom.predicate), atom.span)

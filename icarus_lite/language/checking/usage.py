@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator
 from icarus_lite.language.checking.report import Report
 from icarus_lite.language.checking.vocabulary import ATTACHED
 from icarus_lite.language.percept_types import lineages
-from icarus_lite.language.syntax import Atom, Condition, Domain
+from icarus_lite.language.syntax import Atom, Condition, Domain, DomainTest
 
 _HINT = "remove it, or leave it for those who ask: `; noqa: ICR040` silences this"
 
@@ -50,6 +50,7 @@ def _asked(domain: Domain) -> Iterator[Atom]:
                 yield element.atom
     for skill in domain.skills:
         yield from _atoms((*skill.elements, *skill.holds))
+    yield from _atoms(c for clause in domain.contradictions for c in clause.elements)
     yield from _atoms(domain.goals)
     for task in domain.tasks:
         yield from _atoms(task.goals)
@@ -58,10 +59,14 @@ def _asked(domain: Domain) -> Iterator[Atom]:
     for stop in domain.breakpoints:
         yield stop.condition.atom
     for test in domain.tests:
-        yield from (*test.expect, *test.expect_not)
-        yield from _atoms(test.goals)
-        for later in test.then:
-            yield from (*later.expect, *later.expect_not)
+        yield from _tested(test)
+
+
+def _tested(test: DomainTest) -> Iterator[Atom]:
+    yield from (*test.expect, *test.expect_not)
+    yield from _atoms(test.goals)
+    for later in test.then:
+        yield from (*later.expect, *later.expect_not)
 
 
 def _atoms(conditions: Iterable[Condition]) -> Iterator[Atom]:

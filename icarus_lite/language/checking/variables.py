@@ -18,6 +18,7 @@ from icarus_lite.language.syntax import (
     ConceptClause,
     Condition,
     Constant,
+    Contradiction,
     SkillClause,
     Variable,
 )
@@ -70,6 +71,15 @@ def check_skill_variables(clause: SkillClause, report: Report) -> None:
     effected = [v for effect in clause.effects for v in _variables(effect.atom)]
     others = [*_tested(clause.tests), *commanded, *effected, *passed_back]
     _check_loners(clause.head, conditions, others, report)
+
+
+def check_contradiction_variables(clause: Contradiction, report: Report) -> None:
+    """Check the variables of a contradiction; its head is matched, and binds like an element."""
+    bound = {*clause.head.variables, *_bound_by(clause.elements)}
+    scope = _Scope(clause.head.predicate, bound, clause.elements, report)
+    tested = _tested(clause.tests)
+    scope.require(tested, ":tests")
+    _check_loners(clause.head, clause.elements, tested, report)
 
 
 @dataclass(slots=True)

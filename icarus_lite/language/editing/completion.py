@@ -211,11 +211,14 @@ class _Moment:
     def _predicates(self, place: Place) -> Iterator[Proposal]:
         wants_percepts = place.field in (":percepts", ":is")
         is_head = place.form == "concepts" and not place.field
+        ends = place.form == "contradictions" and not place.field
         for proposal in self._named(Role.PREDICATE):
             origins = self.index.origins(proposal.text)
             if wants_percepts and (Origin.PERCEPT not in origins or proposal.text == place.clause):
                 continue
             if is_head and Origin.CONCEPT not in origins:
+                continue
+            if ends and not _persists(origins):
                 continue
             yield proposal
 
@@ -228,3 +231,9 @@ class _Moment:
                 continue
             head = self.index.head(definitions[0]) if definitions else ""
             yield Proposal(name, role, head or kinds_of(self.index, thing), "")
+
+
+def _persists(origins: Collection[Origin]) -> bool:
+    """Tell whether beliefs from there stay until something ends them."""
+    decided = (Origin.CONCEPT, Origin.PERCEPT)
+    return bool(origins) and not any(origin in decided for origin in origins)

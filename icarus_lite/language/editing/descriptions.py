@@ -11,7 +11,7 @@ from icarus_lite.language.editing.index import Index, Located, Thing
 from icarus_lite.language.editing.occurrences import Occurrence, Role
 from icarus_lite.language.functions import FUNCTIONS, Function
 from icarus_lite.language.keywords import FORMS, MOMENTS, NOT, Keyword, field_named
-from icarus_lite.language.reading.explanations import listing
+from icarus_lite.language.wording import listing
 
 _MOST_CLAUSES = 4
 _MOST_USERS = 12
@@ -19,6 +19,7 @@ _KINDS = {
     Origin.PERCEPT: "percept type",
     Origin.CONCEPT: "concept",
     Origin.EFFECT: "asserted by effects",
+    Origin.GIVEN: "given by tasks",
     Origin.ATTACHMENT: "attachment hierarchy",
 }
 _ATTACHED = (
@@ -194,6 +195,8 @@ def _user(word: Occurrence) -> str:
             return f"`{place.clause}`"
         case "attachments":
             return f"the attachment by `{place.clause}`"
+        case "contradictions":
+            return f"the contradiction of `{place.clause}`"
         case "task" | "long-term-goal":
             return f"{place.form.replace('-', ' ')} `{place.clause}`"
         case "test":

@@ -84,6 +84,7 @@ class Index:
         self._supertypes: dict[str, str] = {}
         self._attributes: dict[str, dict[str, None]] = {}
         self._origins: dict[str, dict[Origin, None]] = {}
+        self._given: set[str] = set()
         for _, occurrence in self._all():
             self._learn(occurrence)
         self._things: dict[Thing, list[Located]] = {}
@@ -148,14 +149,18 @@ class Index:
     def names(self, role: Role) -> tuple[str, ...]:
         """Give the names of a role; of predicates and skills only those that are defined.
 
-        A predicate or skill that is only used is probably misspelt, but commands, symbols and
-        functions are defined elsewhere.
+        A predicate or skill that is only used is probably misspelt, unless a task gives facts of
+        it; commands, symbols and functions are defined elsewhere.
         """
         found = {
             thing.name: None
             for thing, located in self._things.items()
             if thing.role is role
-            and (role not in _DEFINED_HERE or any(each.occurrence.defines for each in located))
+            and (
+                role not in _DEFINED_HERE
+                or any(each.occurrence.defines for each in located)
+                or (role is Role.PREDICATE and thing.name in self._given)
+            )
         }
         return (*found, ATTACHED) if role is Role.PREDICATE and ATTACHED not in found else (*found,)
 
@@ -193,9 +198,12 @@ class Index:
     def origins(self, predicate: str) -> tuple[Origin, ...]:
         """Say where beliefs with a predicate come from."""
         found = self._origins.get(predicate, {})
+        if not found and predicate in self._given:
+            found = {Origin.GIVEN: None}
         if predicate != ATTACHED:
             return tuple(found)
-        return (*(origin for origin in found if origin is not Origin.EFFECT), Origin.ATTACHMENT)
+        own = (origin for origin in found if origin not in (Origin.EFFECT, Origin.GIVEN))
+        return (*own, Origin.ATTACHMENT)
 
     def _all(self) -> Iterator[tuple[str, Occurrence]]:
         for path, file in self._files.items():
@@ -211,6 +219,8 @@ class Index:
             self._origins.setdefault(occurrence.name, {})[origin] = None
         elif occurrence.role is Role.PREDICATE and (place.form, place.field) == ("percepts", ":is"):
             self._supertypes[place.clause] = occurrence.name
+        elif occurrence.role is Role.PREDICATE and (place.form, place.field) == ("task", ":init"):
+            self._given.add(occurrence.name)
 
     def _lineage(self, predicate: str) -> Iterable[str]:
         lineage: dict[str, None] = {}

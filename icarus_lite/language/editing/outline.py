@@ -18,6 +18,7 @@ class EntryKind(StrEnum):
     CONCEPT = "concept"
     SKILL = "skill"
     ATTACHMENT = "attachment"
+    CONTRADICTION = "contradiction"
     TASK = "task"
     TEST = "test"
     DOMAIN = "domain"
@@ -54,6 +55,7 @@ _CLAUSES = {
     "concepts": EntryKind.CONCEPT,
     "skills": EntryKind.SKILL,
     "attachments": EntryKind.ATTACHMENT,
+    "contradictions": EntryKind.CONTRADICTION,
 }
 _NAMED = {
     "domain": EntryKind.DOMAIN,

@@ -205,6 +205,8 @@ class _Export:
         remarks = []
         if any(clause.agent is not None or clause.cost is not None for clause in self._skills):
             remarks.append("Actions of other agents stand beside one's own, and all cost the same.")
+        if self._domain.contradictions:
+            remarks.append("Contradictions are left out: no plan counts on a surprise.")
         evaluated = [
             used
             for used in self._names.used

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Hashable, Iterable
 
-_FOREIGN = re.compile(r"[^a-z0-9_-]+")
+_FOREIGN = r"[^a-z0-9_-]+"
 
 
 class Names:
@@ -43,5 +43,5 @@ def pddl_word(text: str, prefix: str = "n") -> str:
         >>> pddl_word("Hub.Cover 2"), pddl_word("0.31")
         ('hub-cover-2', 'n0-31')
     """
-    word = _FOREIGN.sub("-", text.lower()).strip("-_") or prefix
+    word = re.sub(_FOREIGN, "-", text.lower()).strip("-_") or prefix
     return word if word[0].isalpha() else prefix + word

@@ -22,8 +22,8 @@ from icarus_lite.language.pddl.syntax import (
     Rule,
     Typed,
 )
-from icarus_lite.language.reading.explanations import closest
 from icarus_lite.language.syntax import NOWHERE, Source, Span
+from icarus_lite.language.wording import closest
 
 _DOMAIN_SECTIONS = (
     ":requirements",

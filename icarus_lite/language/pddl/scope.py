@@ -9,8 +9,8 @@ from typing import NoReturn
 from icarus_lite.language.checking.report import Report
 from icarus_lite.language.pddl.nodes import Group, Node, Word
 from icarus_lite.language.pddl.syntax import OBJECT, Predicate, Typed, ancestors, is_a
-from icarus_lite.language.reading.explanations import closest, listing
 from icarus_lite.language.syntax import Span
+from icarus_lite.language.wording import closest, listing
 
 
 class RefusedError(Exception):

@@ -12,7 +12,7 @@ from icarus_lite.language.diagnostics import Diagnostic
 from icarus_lite.language.older_names import MODERN_FIELDS, MODERN_FORMS
 from icarus_lite.language.reading.breakpoints import breakpoints_of_clause, timed
 from icarus_lite.language.reading.parts import Clause, Command, Field, Form, Group, Problem, Word
-from icarus_lite.language.reading.values import choice, cost, priority, seconds
+from icarus_lite.language.reading.values import choice, cost, cycles, priority, seconds
 from icarus_lite.language.syntax import (
     Atom,
     AttachmentRule,
@@ -22,6 +22,7 @@ from icarus_lite.language.syntax import (
     ConceptClause,
     Condition,
     Constant,
+    Contradiction,
     Domain,
     DomainTest,
     LaterCycle,
@@ -61,6 +62,7 @@ class _Draft:
     concepts: list[ConceptClause] = field(default_factory=list)
     skills: list[SkillClause] = field(default_factory=list)
     attachments: list[AttachmentRule] = field(default_factory=list)
+    contradictions: list[Contradiction] = field(default_factory=list)
     tasks: list[Task] = field(default_factory=list)
     goals: list[Condition] = field(default_factory=list)
     tests: list[DomainTest] = field(default_factory=list)
@@ -94,6 +96,8 @@ class _Draft:
 
     def _add_rarer(self, form: Form) -> None:
         match form.keyword.text:
+            case "contradictions":
+                self.contradictions += [self._contradiction(clause) for clause in _clauses(form)]
             case "long-term-goal":
                 self.long_term_goals.append(self._long_term_goal(form))
             case "agents":
@@ -121,6 +125,7 @@ class _Draft:
             long_term_goals=tuple(self.long_term_goals),
             breakpoints=tuple([timed(each, skills) for each in self.breakpoints]),
             agents=tuple([agent.text for agent in self.agents]),
+            contradictions=tuple(self.contradictions),
             source=self.report.source,
         )
 
@@ -191,6 +196,25 @@ class _Draft:
             )
             return None
         return AttachmentRule(clause.head, until[0] if until else None, child, parent, clause.span)
+
+    def _contradiction(self, clause: Clause) -> Contradiction:
+        fields = self._fields(clause.fields, older=False)
+        elements = _values(fields, ":elements", Condition)
+        tests = _values(fields, ":tests", Call)
+        if not elements and not tests:
+            self.report.error(
+                clause.head.span,
+                "ICR011",
+                f"the contradiction of `{clause.head.predicate}` has no conditions",
+                "say what it cannot go together with: :elements ((apart ?obj ?into))",
+            )
+        return Contradiction(
+            head=clause.head,
+            elements=elements,
+            tests=tests,
+            cycles=cycles(_values(fields, ":cycles", Constant), self.report),
+            span=clause.span,
+        )
 
     def _task(self, form: Form) -> Task:
         fields = self._fields(_form_fields(form))

@@ -23,6 +23,7 @@ MODERN_FORMS = (
     "concepts",
     "skills",
     "attachments",
+    "contradictions",
     "agents",
     "task",
     "goals",
@@ -41,11 +42,12 @@ FORM_NAMES = (
 )
 """The same with the older ones, which still load, at the end."""
 
-_MARKS = re.compile(r'[()]|"[^"\\]*(?:\\[\s\S][^"\\]*)*"|;[^\n]*|#\|[\s\S]*?\|#|"|#\|')
-_FORM_AT_MARGIN = re.compile(rf"(?<![^\n])\((?:{'|'.join(FORM_NAMES)})(?=[ \t\n\r\f\v()\"';])")
-_FIRST_WORD = re.compile(r"[^ \t\n\r\f\v()\"';]+")
+# Kept as text: who reads PDDL needs none of them, and `re` keeps what it has compiled.
+_MARKS = r'[()]|"[^"\\]*(?:\\[\s\S][^"\\]*)*"|;[^\n]*|#\|[\s\S]*?\|#|"|#\|'
+_FORM_AT_MARGIN = rf"(?<![^\n])\((?:{'|'.join(FORM_NAMES)})(?=[ \t\n\r\f\v()\"';])"
+_FIRST_WORD = r"[^ \t\n\r\f\v()\"';]+"
 # Possessive, for a row of semicolons could be cut into comments in exponentially many ways.
-_NAMELESS = re.compile(r"(?:[ \t\n\r\f\v]|;[^\n]*+|(?>#\|[\s\S]*?\|#))*+\(\s*\(")
+_NAMELESS = r"(?:[ \t\n\r\f\v]|;[^\n]*+|(?>#\|[\s\S]*?\|#))*+\(\s*\("
 
 
 class Lines:
@@ -120,7 +122,7 @@ def scan(text: str) -> Scan:
     """
     result = _scan(text, margins=frozenset())
     if result.segments and result.segments[-1].unclosed:
-        margins = frozenset(match.start() for match in _FORM_AT_MARGIN.finditer(text))
+        margins = frozenset(match.start() for match in re.finditer(_FORM_AT_MARGIN, text))
         result = _scan(text, margins)
     return result
 
@@ -132,7 +134,7 @@ def _scan(text: str, margins: frozenset[int]) -> Scan:
     stack: list[int] = []
     start = 0
     too_deep: int | None = None
-    for match in _MARKS.finditer(text):
+    for match in re.finditer(_MARKS, text):
         mark, offset = match[0], match.start()
         if mark == "(":
             if offset in margins and stack:
@@ -165,7 +167,7 @@ def _scan(text: str, margins: frozenset[int]) -> Scan:
 def innermost_open(text: str, start: int, stop: int) -> int | None:
     """Give the offset of the innermost parenthesis open at `stop`, or None at top level."""
     stack: list[int] = []
-    for match in _MARKS.finditer(text, start, stop):
+    for match in re.compile(_MARKS).finditer(text, start, stop):
         if match[0] == "(":
             stack.append(match.start())
         elif match[0] == ")" and stack:
@@ -178,10 +180,10 @@ def first_word(text: str, opening: int) -> str:
     after = opening + 1
     while after < len(text) and text[after] in " \t\n\r\f\v":
         after += 1
-    match = _FIRST_WORD.match(text, after)
+    match = re.compile(_FIRST_WORD).match(text, after)
     return match[0] if match else ""
 
 
 def begins_nameless(text: str, segment: Segment) -> bool:
     """Tell whether a segment begins with `((`, as no form does."""
-    return _NAMELESS.match(text, segment.start, segment.stop) is not None
+    return re.compile(_NAMELESS).match(text, segment.start, segment.stop) is not None

@@ -7,9 +7,9 @@ from dataclasses import replace
 
 from icarus_lite.language.checking.report import Report
 from icarus_lite.language.keywords import MOMENTS
-from icarus_lite.language.reading.explanations import listing
 from icarus_lite.language.reading.parts import Clause, Word
 from icarus_lite.language.syntax import Breakpoint, Condition, Moment
+from icarus_lite.language.wording import listing
 
 
 def breakpoints_of_clause(

@@ -6,10 +6,7 @@ parenthesis that is open there, this is enough to say what was expected and what
 
 from __future__ import annotations
 
-import difflib
 import re
-from collections.abc import Iterable
-from itertools import islice
 
 from icarus_lite.language.diagnostics import Diagnostic, Severity
 from icarus_lite.language.reading.brackets import (
@@ -24,7 +21,6 @@ from icarus_lite.language.reading.older import GONE_FIELDS, GONE_FORMS, PDDL_FIE
 from icarus_lite.language.reading.stumbles import (
     FIELD_TERMINALS,
     FORM_TERMINALS,
-    LONGEST_WORD,
     MODERN_FIELD_TERMINALS,
     Context,
     Finding,
@@ -35,6 +31,7 @@ from icarus_lite.language.reading.stumbles import (
     shortened,
 )
 from icarus_lite.language.syntax import Span
+from icarus_lite.language.wording import closest, listing
 
 _PHRASES = {
     "LPAR": '"("',
@@ -47,7 +44,6 @@ _PHRASES = {
     "TIMES": "`*`",
     "NOT": "`not`",
 }
-_LONGEST_LIST = 20
 _VALUES = "a variable, a name, a number or a string"
 _WORD = re.compile(r'"[^"\\]*(?:\\[\s\S][^"\\]*)*"|[()\']|[^ \t\n\r\f\v()"\';]+')
 _LEGAL_WORD = re.compile(r'[()"\']|[?^:*]?[^ \t\n\r\f\v()"\';?:^*|#]+\Z|\*\Z')
@@ -89,27 +85,6 @@ def stands_inside(stumble: Stumble, text: str) -> int | None:
     if is_field and not stumble.accepts & FIELD_TERMINALS.keys():
         return innermost_open(text, stumble.start, stumble.offset)
     return None
-
-
-def closest(word: str, candidates: Iterable[str]) -> str | None:
-    """Give the candidate that the word was probably meant to be, or None."""
-    if len(word) > LONGEST_WORD:
-        return None
-    candidates = list(candidates)
-    for each in candidates:
-        if each.casefold() == word.casefold():
-            return each
-    alike = [each for each in candidates if 3 * len(each) >= len(word) >= len(each) / 3]
-    near = difflib.get_close_matches(word, alike, n=1, cutoff=0.6)
-    return near[0] if near else None
-
-
-def listing(words: Iterable[str], last: str = "and") -> str:
-    """Write words as `a, b and c`; of more than twenty, the first ones."""
-    words = list(islice(words, _LONGEST_LIST + 1))
-    if len(words) > _LONGEST_LIST:
-        words, last = [*words[: _LONGEST_LIST - 1], "so on"], "and"
-    return f" {last} ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)
 
 
 def _place(lines: Lines, offset: int, word: str) -> Span:

@@ -14,7 +14,9 @@ from icarus_lite.language.reading.stumbles import (
 )
 
 _COMPARISONS = frozenset({"<", ">", "<=", ">=", "=", "/=", "!=", "=="})
-_WITH_CLAUSES = frozenset({"concepts", "skills", "attachments", "create-concepts", "create-skills"})
+_WITH_CLAUSES = frozenset(
+    {"concepts", "skills", "attachments", "contradictions", "create-concepts", "create-skills"}
+)
 _NAMED = frozenset({"task", "test", "long-term-goal"})
 _NO_SENTENCE = frozenset({"", "(", ")"})
 _QUOTATION_MARKS = tuple(

@@ -7,10 +7,9 @@ included file names that file when it is loaded on its own, and counts for nothi
 
 from __future__ import annotations
 
-import dataclasses
 import os
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import TypeAlias, TypeVar, cast
@@ -76,7 +75,7 @@ def expand(
     expanded = inclusion.expand(forms, own)
     return Expansion(
         tuple(expanded),
-        dataclasses.replace(source, included=tuple(inclusion.sources)),
+        replace(source, included=tuple(inclusion.sources)),
         tuple(inclusion.problems),
         frozenset(inclusion.mended),
         inclusion.is_whole,
@@ -200,9 +199,11 @@ def relocate(node: _Node, path: str) -> _Node:
 
 def _relocated(node: object, path: str) -> object:
     if isinstance(node, Span):
-        return dataclasses.replace(node, path=path)
+        return replace(node, path=path)
     if isinstance(node, tuple):
         return tuple([_relocated(each, path) for each in node])
+    import dataclasses  # noqa: PLC0415 - few files include others
+
     if dataclasses.is_dataclass(node) and not isinstance(node, type):
         values = {
             each.name: _relocated(getattr(node, each.name), path)

@@ -21,7 +21,9 @@ _FORM_AT_MARGIN = re.compile(
     rf"(?<![^\n])\(*(?:{'|'.join(FORM_NAMES)})(?=[ \t\n\r\f\v()\"';])"
     r'|;[^\n]*|#\|[\s\S]*?\|#|"[^"\\]*(?:\\[\s\S][^"\\]*)*"'
 )
-_WITH_CLAUSES = frozenset({"concepts", "skills", "attachments", "create-concepts", "create-skills"})
+_WITH_CLAUSES = frozenset(
+    {"concepts", "skills", "attachments", "contradictions", "create-concepts", "create-skills"}
+)
 _NAMED = frozenset({"test", "task", "long-term-goal"})
 _OF_CLAUSE = 2
 

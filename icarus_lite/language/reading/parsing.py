@@ -9,7 +9,6 @@ from __future__ import annotations
 import functools
 import math
 import re
-from importlib import resources
 from typing import Any, cast
 
 from lark import Lark, TextSlice, Token, Transformer
@@ -27,6 +26,7 @@ from icarus_lite.language.reading.parts import (
     Problem,
     Word,
 )
+from icarus_lite.language.reading.tables import build, grammar_text, load
 from icarus_lite.language.syntax import (
     Atom,
     Bind,
@@ -50,16 +50,8 @@ def parser() -> Lark:
 
     Its start symbols are `file`, `conditions` (a goal) and `pattern`; each gives a tuple.
     """
-    grammar = resources.files(__package__).joinpath("grammar.lark").read_text(encoding="utf-8")
-    return Lark(
-        grammar,
-        parser="lalr",
-        lexer="contextual",
-        start=["file", "conditions", "pattern"],
-        transformer=_Parts(),
-        maybe_placeholders=False,
-        propagate_positions=False,
-    )
+    grammar = grammar_text()
+    return load(grammar, _Parts()) or build(grammar, _Parts())
 
 
 def parse(text: str, start: int, stop: int, place: Span, rule: str) -> object:
@@ -177,7 +169,7 @@ class _Parts(Transformer[Token, tuple[Form, ...]]):
         return tuple(children)
 
     domain_form = percepts_form = concepts_form = skills_form = staticmethod(_form)
-    attachments_form = agents_form = task_form = staticmethod(_form)
+    attachments_form = contradictions_form = agents_form = task_form = staticmethod(_form)
     goals_form = test_form = staticmethod(_form)
     include_form = long_term_goal_form = break_form = problems_form = staticmethod(_form)
     atom = staticmethod(_atom)

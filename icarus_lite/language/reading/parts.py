@@ -58,7 +58,7 @@ class Group:
 
 @dataclass(frozen=True, slots=True)
 class Clause:
-    """An entry of a concepts, skills or attachments form: a pattern and its fields."""
+    """An entry of a concepts, skills, attachments or contradictions form: a pattern and fields."""
 
     head: Atom
     fields: tuple[Field, ...]

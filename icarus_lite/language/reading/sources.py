@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import codecs
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 from icarus_lite.language.diagnostics import Diagnostic, DomainError, Severity
 from icarus_lite.language.syntax import NOWHERE, Source, Span
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 MAX_BYTES = 10_000_000
 """The size of the largest file that is read. A domain of a thousand clauses takes 0.3 MB."""
@@ -19,7 +22,7 @@ _OTHER_ENCODINGS = (
 )
 
 
-def read_source(path: Path, shown: str) -> Source:
+def read_source(path: Path | str, shown: str) -> Source:
     """Read a file as text.
 
     Args:
@@ -30,7 +33,7 @@ def read_source(path: Path, shown: str) -> Source:
         DomainError: It cannot be read, is larger than `MAX_BYTES`, or is not UTF-8.
     """
     try:
-        with path.open("rb") as file:
+        with open(path, "rb") as file:  # noqa: PTH123 - a name does as well
             data = file.read(MAX_BYTES + 1)
     except (OSError, ValueError) as error:  # a NUL or a lone surrogate in the name is a ValueError
         hint = "check the name and the folder" if isinstance(error, FileNotFoundError) else ""

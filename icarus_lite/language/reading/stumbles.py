@@ -6,6 +6,7 @@ import re
 from dataclasses import dataclass
 
 from icarus_lite.language.reading.brackets import FORM_NAMES, Lines
+from icarus_lite.language.wording import LONGEST_WORD
 
 _ALSO_FIELDS = {"agents": "AGENTS_FORM"}
 FORM_TERMINALS = {
@@ -27,6 +28,7 @@ MODERN_FIELD_TERMINALS = {
     "UNTIL": ":until",
     "CHILD": ":child",
     "PARENT": ":parent",
+    "CYCLES": ":cycles",
     "IS": ":is",
     "ROBOT": ":robot",
     "AGENTS": ":agents",
@@ -53,8 +55,6 @@ FIELD_TERMINALS = {**MODERN_FIELD_TERMINALS, **_OLDER, "PERCEPTS_FIELD": ":perce
 _BLANKS = " \t\n\r\f\v"
 _WORD_ENDS = re.compile(r"[ \t\n\r\f\v()\"';]")
 
-
-LONGEST_WORD = 60
 
 Finding = tuple[str, str, str]
 """A code, a message and a hint."""

@@ -38,6 +38,19 @@ def cost(given: Sequence[Constant], report: Report) -> int | None:
     return None
 
 
+def cycles(given: Sequence[Constant], report: Report) -> int:
+    """Read a `:cycles`, a number of cycles in a row; 1 if it is not given."""
+    if not given:
+        return 1
+    value = given[0].value
+    if isinstance(value, int) and value > 0:
+        return value
+    message = f"conditions cannot hold for {given[0]} cycles in a row"
+    hint = "give a whole number from 1 up, such as :cycles 5"
+    report.error(given[0].span, "ICR010", message, hint)
+    return 1
+
+
 def priority(given: Term | None) -> float | Variable:
     """Read a `:priority`: a number, or a variable that the relevance binds to one."""
     if isinstance(given, Variable):

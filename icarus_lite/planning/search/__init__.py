@@ -1,7 +1,25 @@
 """Search on a problem without variables: a plan soon, then a shorter one."""
 
-from icarus_lite.planning.search.improvement import improve
-from icarus_lite.planning.search.result import Effort, Limits, Progress, SearchResult
-from icarus_lite.planning.search.searching import search
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from icarus_lite._on_use import imported_on_use
+
+if TYPE_CHECKING:
+    from icarus_lite.planning.search.improvement import improve
+    from icarus_lite.planning.search.result import Effort, Limits, Progress, SearchResult
+    from icarus_lite.planning.search.searching import search
+
+_HOMES = {
+    "Effort": "result",
+    "Limits": "result",
+    "Progress": "result",
+    "SearchResult": "result",
+    "improve": "improvement",
+    "search": "searching",
+}
 
 __all__ = ["Effort", "Limits", "Progress", "SearchResult", "improve", "search"]
+
+__getattr__ = imported_on_use(__name__, _HOMES)

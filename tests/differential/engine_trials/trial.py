@@ -155,6 +155,8 @@ class _Run:
         self._domain = domain
         self._worlds = worlds(trial.history)
         self._compiled = compile_domain(self._domain)
+        self._reviewing = random.Random(f"reviews of seed {trial.seed}")
+        self._doubtful: list[Failure] = []
         # Every third network remembers little, so that its log forgets cycles on the way.
         budget = Budget(changes_kept=40) if self._draw.random() < 1 / 3 else Budget()
         self._network: Network = self._compiled.network(budget)
@@ -169,6 +171,7 @@ class _Run:
             if cycle == copied:
                 yield from self._imagined(cycle)
             changes = self._tell(cycle, world)
+            yield from self._reviewed()
             got = frozenset(map(row, self._network.beliefs()))
             yield from differing("network", cycle, wanted[cycle], got)
             told = (texts(changes.added), texts(changes.removed), texts(changes.altered))
@@ -198,9 +201,32 @@ class _Run:
             if way < 0.35:
                 values = changed_columns(kind, names, values, before)
             return self._network.move(kind, names, values, change.asserted, change.withdrawn)
+        mistaken = self._mistaken(world) if self._reviewing.random() < 0.3 else ()
+        seen = World(world.percepts, (*world.asserted, *mistaken))
+
+        def review() -> Sequence[Belief]:
+            wanted = self._scratch.beliefs(seen)
+            got = frozenset(map(row, self._network.beliefs()))
+            self._doubtful += differing("network under review", cycle, wanted, got)
+            return mistaken
+
         if way < 0.2:
-            return self._network.update_snapshot(world.percepts, world.asserted)
-        return self._network.update(as_delta(change))
+            return self._network.update_snapshot(world.percepts, seen.asserted, review)
+        delta = as_delta(change)
+        return self._network.update(
+            replace(delta, asserted=(*delta.asserted, *mistaken)), review if mistaken else None
+        )
+
+    def _mistaken(self, world: World) -> tuple[Belief, ...]:
+        """Draw beliefs that are asserted in other cycles, to be asserted and withdrawn at once."""
+        other = self._reviewing.choice(self._worlds).asserted
+        fresh = [belief for belief in other if belief not in world.asserted]
+        return tuple(self._reviewing.sample(fresh, min(3, len(fresh))))
+
+    def _reviewed(self) -> Iterator[Failure]:
+        """Say what was wrong while a review looked at the beliefs."""
+        found, self._doubtful = self._doubtful, []
+        yield from found
 
     def _imagined(self, cycle: int) -> Iterator[Failure]:
         """Change a copy, which must not change the network itself."""

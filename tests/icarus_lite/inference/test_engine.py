@@ -164,3 +164,18 @@ def test_each_outcome_is_judged_by_what_the_one_before_it_has_left() -> None:
     both = [outcome("place-down", "h1", "c1"), outcome("take-out", "o1", "c1")]
     assert [str(b) for b in engine.step(memory, ALL, both).state.beliefs] == ["(holding h1 o1)"]
     assert [str(b) for b in engine.step(memory, ALL, both[::-1]).state.beliefs] == ["(free h1)"]
+
+
+def test_what_is_asserted_anew_with_another_value_is_looked_back_to_with_the_old_one() -> None:
+    text = """(percepts (object))
+    (skills
+      ((paint ?o ?c) :elements ((object ?o)) :actions ((*paint ?o ?c)) :effects ((mark ?o ^is ?c)))
+      ((strip ?o) :elements ((object ?o)) :actions ((*strip ?o))
+                  :effects ((not (mark ?o)))))"""
+    domain, problems = parse_domain(text)
+    assert domain is not None, problems
+    engine, memory = InferenceEngine(domain), Memory()
+    memory = engine.step(memory, ALL[1:], [outcome("paint", "o1", "red")])
+    memory = engine.step(memory, ALL[1:], [outcome("strip", "o1"), outcome("paint", "o1", "blue")])
+    for state, colour in ((engine.look_back(0), "red"), (memory.state, "blue")):
+        assert [dict(belief.attributes) for belief in state.supports] == [{"is": colour}]

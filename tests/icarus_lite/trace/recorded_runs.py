@@ -31,6 +31,10 @@ STORE, _ = parse_domain(
 (attachments
   ((take ?h ?t) :until (drop ?h ?t) :child ?t :parent ?h)
   ((store ?h ?t ?in) :child ?t :parent ?in))
+(contradictions
+  ((attached ?t ?h) :elements ((hand ?h) (thing ?t ^seen yes)) :cycles 2)
+  ((stored ?t) :elements ((thing ?t ^seen no) (not (inside ?t ?_any))) :cycles 3)
+  ((mark ?t ^colour red) :elements ((small ?t))))
 """,
     "store.icr",
 )

@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from runtime.cell.world import FIXTURE, HandParameters, PlacedPart, World
+from runtime.cell.arrangement import FIXTURE, PlacedPart
+from runtime.cell.world import HandParameters, World
 from runtime.errors import UsageError
 from runtime.parts import GRIPPER_OPENING_M, PartModel, Primitive, load_parts
 
@@ -138,18 +139,34 @@ def test_let_go_in_the_air_it_falls_to_the_table(world):
     assert (part.parent, part.seated) == (None, False)
 
 
-@pytest.mark.parametrize(("aside", "seated"), [(0.0, True), (0.0075, True), (0.0085, False)])
-def test_the_chamfer_decides_whether_it_is_seated(world, aside, seated):
+@pytest.mark.parametrize(
+    ("aside", "down", "seated"),
+    [
+        (0.0, -0.0006, True),
+        (0.0007, -0.0012, True),  # at the foot of the wall
+        (0.0020, -0.0006, False),  # still on the broken edge
+        (0.0, 0.0010, False),  # nothing has pressed it in
+        (0.0, 0.0030, False),
+    ],
+)
+def test_where_it_is_let_go_decides_whether_it_is_seated(world, aside, down, seated):
     grip(world, "hubcover-1")
     target = seat(world, "hubcover-1", "case-1")
-    drop(world, target[0] + aside, target[1], target[2] + 0.005)
+    drop(world, target[0] + aside, target[1], target[2] + down)
     part = world.parts["hubcover-1"]
     assert part.parent == "case-1"
     assert part.seated is seated
     if seated:
         assert part.position == pytest.approx(target)
-    else:  # it lies on the floor of the case, beside the recess
-        assert part.position[2] == pytest.approx(0.006 + 0.014 + 0.012)
+
+
+def test_beside_its_seat_it_lies_on_the_floor_of_the_case(world):
+    grip(world, "hubcover-1")
+    target = seat(world, "hubcover-1", "case-1")
+    drop(world, target[0] + 0.0085, target[1], target[2] + 0.005)
+    part = world.parts["hubcover-1"]
+    assert (part.parent, part.seated) == ("case-1", False)
+    assert part.position[2] == pytest.approx(0.006 + 0.014 + 0.012)
 
 
 def test_let_go_too_deep_it_is_not_seated(world):
@@ -161,11 +178,12 @@ def test_let_go_too_deep_it_is_not_seated(world):
 
 def test_a_lid_fits_only_the_right_way_round(world):
     x, y, z = seat(world, "casingtop-1", "case-1")
+    world.arrangement.pinned = frozenset({"case-1"})
     grip(world, "casingtop-1")
-    drop(world, x, y, z + 0.003, turn=math.pi / 2)
+    drop(world, x, y, z - 0.0015, turn=math.pi / 2)
     assert not world.parts["casingtop-1"].seated
     assert grip(world, "casingtop-1", turn=math.pi / 2)
-    drop(world, x, y, z + 0.003, turn=math.pi)
+    drop(world, x, y, z - 0.0015, turn=math.pi)
     assert world.parts["casingtop-1"].seated
 
 
@@ -182,7 +200,8 @@ def test_what_sits_in_a_part_moves_with_it(world):
     world.insert("bearing-1", "input-1")
     before = np.subtract(world.parts["bearing-1"].position, world.parts["input-1"].position)
     grip(world, "input-1", turn=0.3)
-    drop(world, *seat(world, "input-1", "case-1"), turn=0.3)
+    x, y, z = seat(world, "input-1", "case-1")
+    drop(world, x, y, z - 0.0006, turn=0.3)
     after = np.subtract(world.parts["bearing-1"].position, world.parts["input-1"].position)
     assert after == pytest.approx(before)
     assert world.parts["bearing-1"].parent == "input-1"

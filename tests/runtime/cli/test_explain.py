@@ -59,8 +59,8 @@ def explain(*arguments: object) -> str:
 
 def test_every_clause_of_the_concept_and_no_other() -> None:
     out = explain(GEARBOX, "graspable")
-    assert out.count("gearbox.icr:") == 4
-    assert out.count("all rows at once") == 4
+    assert out.count("gearbox.icr:") == 5
+    assert out.count("all rows at once") == 5
     assert "near" not in out
 
 
@@ -102,13 +102,13 @@ def test_the_generated_code_on_request() -> None:
     assert "def " not in explain(GEARBOX, "free")
     assert "  | def free_" in explain(GEARBOX, "free", "--source")
     (clause,) = json.loads(explain(GEARBOX, "free", "--source", "--json"))["clauses"]
-    assert clause["source"].splitlines()[1] == f"# {GEARBOX}:16"
+    assert clause["source"].splitlines()[1] == f"# {GEARBOX}:20"
 
 
 def test_an_unknown_concept_is_told_with_what_was_meant() -> None:
     with pytest.raises(UsageError, match="has no concept called nera; did you mean near"):
         explain(GEARBOX, "nera")
-    with pytest.raises(UsageError, match="it has carried, fits, free, graspable"):
+    with pytest.raises(UsageError, match="it has apart, carried, empty, fits, free, graspable"):
         explain(GEARBOX, "xyz")
 
 

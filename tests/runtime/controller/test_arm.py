@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from runtime.controller.arm import HOME, Arm, ForceMode
+from runtime.controller.arm import HOME, Arm
 from runtime.controller.motions import (
     MAX_JOINT_SPEED,
     JointMove,
@@ -201,20 +201,6 @@ def test_the_slider_slows_the_arm_without_a_jump():
     assert slow.joints == target
     assert len(leisurely) == pytest.approx(2 * len(quick), abs=3)
     assert max(float(np.abs(qd).max()) for qd in leisurely) == pytest.approx(0.5, rel=0.01)
-
-
-def test_force_mode_yields_along_its_axis_until_the_force_is_met():
-    arm = Arm(UR5, HOME)
-    arm.force_mode = ForceMode(
-        STILL, (False, False, True, False, False, False), (0, 0, -10.0, 0, 0, 0), (0.1,) * 6
-    )
-    for _ in range(50):
-        arm.step(DT)
-    assert arm.tcp_speed == pytest.approx((0, 0, -0.02, 0, 0, 0), abs=1e-4)
-    arm.external_wrench = (0, 0, 10.0, 0, 0, 0)
-    for _ in range(50):
-        arm.step(DT)
-    assert arm.tcp_speed == pytest.approx(STILL, abs=1e-6)
 
 
 def test_a_tool_moves_the_centre_point_and_the_past_is_remembered():

@@ -9,12 +9,10 @@ from hypothesis import strategies as st
 from runtime.controller.arm import HOME
 from runtime.controller.bench import BenchServer
 from runtime.controller.control_box import ControlBox
+from runtime.controller.dashboard import DashboardServer
+from runtime.controller.fault_actions import FaultActions
+from runtime.controller.rtde_server import RtdeServer
 from runtime.kinematics import UR5
-
-
-@pytest.fixture
-def dropped():
-    return []
 
 
 @pytest.fixture
@@ -23,8 +21,13 @@ def box():
 
 
 @pytest.fixture
-def bench(box, dropped):
-    return BenchServer(box, lambda: dropped.append(True))
+def actions(box):
+    return FaultActions(box, RtdeServer(box), DashboardServer(box))
+
+
+@pytest.fixture
+def bench(box, actions):
+    return BenchServer(box, actions)
 
 
 def ask(bench, **request):
@@ -53,12 +56,11 @@ def test_the_state_says_what_it_comes_from(bench, box):
     assert state["outputs"]["tool_digital_out_0"] is False
 
 
-def test_faults_happen(bench, box, dropped):
+def test_faults_happen(bench, box, actions):
     box.load("sleep(1)\n")
     assert ask(bench, fault={"kill_script": True})["ok"]
     assert box.program is None
     assert ask(bench, fault={"drop_rtde": True})["ok"]
-    assert dropped == [True]
     assert ask(bench, fault={"protective_stop": True})["ok"]
     assert ask(bench, query="state")["safety"] == "PROTECTIVE_STOP"
     assert "stopped already" in ask(bench, fault={"protective_stop": True})["error"]
@@ -67,9 +69,36 @@ def test_faults_happen(bench, box, dropped):
     assert ask(bench, fault={"emergency_stop": False})["ok"]
     assert ask(bench, query="state")["robot_mode"] == "POWER_OFF"
     assert ask(bench, fault={"silence": 2.5})["ok"]
-    assert bench.silence_s == 2.5
+    assert actions.silence_s == 2.5
     assert ask(bench, fault={"die": True})["ok"]
-    assert bench.dying
+    assert actions.dying
+
+
+def test_a_contact_is_felt_at_once_and_taken_away(bench, box):
+    x, y, z = box.arm.tcp_pose[:3]
+    heights = [[z + 0.001, z + 0.001], [z + 0.001, z + 0.001]]
+    surface = {"origin": [x - 0.05, y - 0.05], "step_m": 0.1, "heights": heights}
+    assert ask(bench, contact={**surface, "stiffness_n_m": 20000, "thread": None})["ok"]
+    assert ask(bench, query="state")["wrench"][2] == pytest.approx(20)
+    assert ask(bench, contact=None)["ok"]
+    assert ask(bench, query="state")["wrench"] == [0] * 6
+
+
+def test_a_schedule_takes_the_place_of_the_one_before(bench):
+    later = [{"fault": "die", "when": {"time_s": 9}}, {"fault": "stall", "when": {"move": 2}}]
+    assert ask(bench, faults=later)["ok"]
+    assert bench.schedule.pending == 2
+    assert ask(bench, faults={"schedule": later[:1], "seed": 4})["ok"]
+    assert bench.schedule.pending == 1
+    assert ask(bench, faults=[])["ok"]
+    assert bench.schedule.pending == 0
+
+
+def test_the_journal_is_told(bench, box):
+    box.protective_stop("a test")
+    journal = ask(bench, query="journal")["journal"]
+    assert [event["event"] for event in journal["events"]] == ["protective_stop"]
+    assert journal["travel_while_stopped_rad"] == 0
 
 
 @pytest.mark.parametrize(
@@ -77,7 +106,7 @@ def test_faults_happen(bench, box, dropped):
     [
         ({"fault": {"earthquake": True}}, "there is no fault 'earthquake'"),
         ({"fault": {}}, '"fault" takes an object'),
-        ({"fault": {"silence": -1}}, '"silence" takes seconds'),
+        ({"fault": {"silence": -1}}, "wall_s: -1; expected a number from 0.001 to 600 s"),
         ({"fault": {"die": 1}}, '"die" takes true or false, not 1'),
         ({"dance": 1}, "there is no request 'dance'; known are"),
         ({}, "a request is an object with"),
@@ -86,6 +115,10 @@ def test_faults_happen(bench, box, dropped):
         ({"wrench": [10**400] * 6}, '"wrench" takes a list of 6 numbers'),
         ({"inputs": {"tool_digital_in_0": 1}}, "takes true or false, not 1"),
         ({"inputs": 5}, '"inputs" takes an object'),
+        ({"outputs": {"tool_digital_in_0": True}}, "there is no output 'tool_digital_in_0'"),
+        ({"contact": {"origin": [0, 0]}}, '"contact" lacks "step_m"'),
+        ({"faults": [{"fault": "die"}]}, "entry 1: when: None"),
+        ({"faults": {"schedule": [], "seed": "x"}}, '"seed" takes a number'),
     ],
 )
 def test_a_wrong_request_is_answered_with_what_is_right(bench, request_, words):
@@ -96,5 +129,6 @@ def test_a_wrong_request_is_answered_with_what_is_right(bench, request_, words):
 
 @given(st.binary(max_size=60))
 def test_garbage_is_answered(garbage):
-    bench = BenchServer(ControlBox(UR5, lambda: 0.0, HOME), lambda: None)
+    box = ControlBox(UR5, lambda: 0.0, HOME)
+    bench = BenchServer(box, FaultActions(box, RtdeServer(box), DashboardServer(box)))
     assert bench.answer(garbage)["ok"] is False

@@ -88,15 +88,67 @@ def test_servoj_follows(rig, wait):
     assert rig.control.servoStop()
 
 
+def floor(rig, below_m, stiffness=30_000):
+    """Put a level surface below the tool; give its height."""
+    x, y, z = rig.receive.getActualTCPPose()[:3]
+    heights = [[z - below_m] * 5] * 5
+    surface = {"origin": [x - 0.2, y - 0.2], "step_m": 0.1, "heights": heights}
+    rig.process.bench({"contact": {**surface, "stiffness_n_m": stiffness, "thread": None}})
+    return z - below_m
+
+
 def test_force_mode_presses_until_the_force_is_met(rig, wait):
-    down = ([0] * 6, [0, 0, 1, 0, 0, 0], [0, 0, -10, 0, 0, 0], 2, [0.1] * 6)
+    height = floor(rig, 0.02)
+    assert rig.control.zeroFtSensor()
+    down = ([0] * 6, [0, 0, 1, 0, 0, 0], [0, 0, -10, 0, 0, 0], 2, [0.1, 0.1, 0.05, 1, 1, 1])
+    assert rig.control.forceModeSetDamping(0.02)
     assert rig.control.forceMode(*down)
-    wait(lambda: rig.receive.getActualTCPSpeed()[2] < -0.01)
-    rig.process.bench({"wrench": [0, 0, 10, 0, 0, 0]})
-    wait(lambda: abs(rig.receive.getActualTCPSpeed()[2]) < 1e-6)
-    assert rig.receive.getActualTCPForce() == [0, 0, 10, 0, 0, 0]
+    wait(lambda: rig.receive.getActualTCPForce()[2] == pytest.approx(10, abs=0.1))
+    assert rig.receive.getActualTCPPose()[2] == pytest.approx(height - 10 / 30_000, abs=1e-4)
+    # A line goes on in the axes that do not yield.
+    line = moved(rig.receive.getActualTCPPose(), dx=0.02)
+    assert rig.control.moveL(line, 0.2, 1.0)
+    wait(lambda: rig.receive.getActualTCPPose()[0] == pytest.approx(line[0], abs=1e-4))
+    assert rig.receive.getActualTCPForce()[2] == pytest.approx(10, abs=0.5)
     assert rig.control.forceModeStop()
+    rig.process.bench({"contact": None})
+    wait(lambda: rig.receive.getActualTCPForce() == [0] * 6)
+
+
+def test_a_wired_force_is_felt_and_zeroed(rig, wait):
+    rig.process.bench({"wrench": [1, 2, 3, 0, 0, 0.5]})
+    wait(lambda: rig.receive.getActualTCPForce() == [1, 2, 3, 0, 0, 0.5])
+    assert rig.control.zeroFtSensor()
+    wait(lambda: rig.receive.getActualTCPForce() == [0] * 6)
     rig.process.bench({"wrench": [0] * 6})
+    assert rig.control.zeroFtSensor()
+
+
+def test_a_move_until_contact_ends_where_it_began(rig, wait):
+    height = floor(rig, 0.02)
+    assert rig.control.moveUntilContact([0, 0, -0.05, 0, 0, 0])
+    if rig.process.model == "ur5":
+        # Before PolyScope 5.4 the client leaves `tool_contact` out of its program.
+        assert rig.reached(HOME)
+        rig.process.bench({"contact": None})
+        return
+    wait(lambda: rig.receive.getActualTCPPose()[2] == pytest.approx(height, abs=2e-4))
+    assert rig.receive.getActualTCPForce()[2] < 1
+    assert rig.control.moveL(moved(rig.receive.getActualTCPPose(), dz=0.02), 0.3, 2.0)
+    # With an asynchronous move the client's program stops by itself and goes back.
+    assert rig.control.startContactDetection([0, 0, -1, 0, 0, 0])
+    assert rig.control.moveL(moved(rig.receive.getActualTCPPose(), dz=-0.05), 0.05, 1.0, True)
+
+    # Not asked meanwhile: a question that is just being answered can swallow the client's stop.
+    def back_at_the_surface():
+        near = rig.receive.getActualTCPPose()[2] == pytest.approx(height, abs=2e-4)
+        return near and not any(rig.receive.getActualQd())
+
+    wait(back_at_the_surface, 15)
+    assert rig.control.readContactDetection()
+    assert rig.control.stopContactDetection()
+    assert rig.control.isProgramRunning()
+    rig.process.bench({"contact": None})
 
 
 def test_tool_and_payload_are_set(rig, wait):
@@ -217,7 +269,7 @@ def test_an_emergency_stop_needs_power_and_brakes(breakable_rig, wait):
     assert rig.control.moveJ(TARGET, 3.0, 10.0) is False
     rig.process.bench({"fault": {"emergency_stop": False}})
     dashboard.powerOn()
-    assert dashboard.robotmode() == "Robotmode: IDLE"
+    wait(lambda: dashboard.robotmode() == "Robotmode: IDLE")
     dashboard.brakeRelease()
     wait(lambda: rig.receive.getRobotMode() == 7)
     assert rig.control.reuploadScript()
@@ -231,6 +283,22 @@ def test_a_line_out_of_reach_is_refused_with_a_protective_stop(breakable_rig, wa
     wait(breakable_rig.receive.isProtectiveStopped)
     assert breakable_rig.state()["safety_reason"] == "the target of the line is out of reach"
     assert breakable_rig.reached(HOME)
+
+
+def test_a_line_that_presses_too_hard_is_a_protective_stop(breakable_rig, wait):
+    rig = breakable_rig
+    height = floor(rig, 0.03)
+    assert rig.control.moveL(moved(rig.receive.getActualTCPPose(), dz=-0.1), 0.1, 1.0) is False
+    wait(rig.receive.isProtectiveStopped)
+    state = rig.state()
+    assert "more than 150 N" in state["safety_reason"]
+    assert state["wrench"][2] > 150
+    assert rig.receive.getActualTCPPose()[2] > height - 0.02
+    # Unlocked, the arm may back out, though it still presses.
+    rig.recover()
+    assert rig.control.moveL(moved(rig.receive.getActualTCPPose(), dz=0.05), 0.1, 1.0)
+    rig.process.bench({"contact": None})
+    assert rig.process.bench({"query": "journal"})["journal"]["force_n"] > 150
 
 
 def test_an_inverse_out_of_reach_ends_the_program(breakable_rig, wait):

@@ -80,12 +80,19 @@ def test_an_emergency_stop_ends_the_program_and_needs_power_and_brakes(bench):
     assert bench.dashboard.answer("power on") == "Failed: the emergency stop is pressed"
     with pytest.raises(ScriptError, match="a program was refused: robot mode POWER_OFF"):
         bench.box.load(MOVE)
-    bench.box.safety.release_emergency_stop()
+    bench.box.release_emergency_stop()
     assert bench.dashboard.answer("power on") == "Powering on"
+    assert bench.dashboard.answer("robotmode") == "Robotmode: POWER_ON"
+    bench.run(1.1)
     assert bench.dashboard.answer("robotmode") == "Robotmode: IDLE"
     with pytest.raises(ScriptError, match="robot mode IDLE"):
         bench.box.load(MOVE)
     assert bench.dashboard.answer("brake release") == "Brake releasing"
+    bench.run(0.9)
+    with pytest.raises(ScriptError, match="robot mode IDLE"):
+        bench.box.load(MOVE)
+    bench.run(0.2)
+    assert bench.dashboard.answer("robotmode") == "Robotmode: RUNNING"
     bench.box.load(MOVE)
     bench.run(3.0)
     assert bench.box.arm.joints[0] == 1
@@ -111,7 +118,10 @@ def test_a_motion_that_cannot_go_on_is_a_protective_stop(bench):
         ("movej([0, 0, 0, 0, 0, 0], speed=1)", "movej() cannot be called as movej(…, speed=…)"),
         ("movej([1e200, 0, 0, 0, 0, 0])", "the joint list is 1e+200, which is beyond any arm"),
         ("speedl([1, 2, 3])", "the tool speed must have six numbers"),
-        ("force_mode(p[0,0,0,0,0,0],[0,0,0,0,0,0],[0,0,0,0,0,0],1,[0,0,0,0,0,0])", "type 1"),
+        (
+            "force_mode(p[0,0,0,0,0,0],[0,0,0,0,0,0],[0,0,0,0,0,0],4,[0,0,0,0,0,0])",
+            "types 1, 2 and 3",
+        ),
     ],
 )
 def test_what_cannot_be_done_stops_the_program_with_a_sentence(bench, text, reason):
@@ -211,3 +221,45 @@ def test_the_dashboard_answers_in_the_words_clients_wait_for(bench):
     assert answer("pause") == "Pausing program"
     assert answer("programState") == "PAUSED go"
     assert "not a robot, not URSim" in answer("shutdown")
+
+
+def test_force_mode_is_asked_for_every_cycle_and_may_change(bench):
+    bench.box.load(
+        "def press():\n"
+        "  wrench = [0, 0, -5, 0, 0, 0]\n"
+        "  while True:\n"
+        "    force_mode(p[0,0,0,0,0,0], [0,0,1,0,0,0], wrench, 2, [1,1,0.1,1,1,1])\n"
+        "    sync()\n"
+        "    if get_actual_tcp_pose()[2] < 0.4:\n"
+        "      wrench[2] = 5\n"
+        "    end\n"
+        "  end\n"
+        "end\n"
+    )
+    bench.run(0.1)
+    mode = bench.box.arm.force_mode
+    assert mode is not None
+    bench.run(0.1)
+    assert bench.box.arm.force_mode is mode
+    bench.run(2.0)
+    assert bench.box.arm.force_mode.wrench[2] == 5
+    bench.box.stop_program("a test")
+    assert bench.box.arm.force_mode is None
+
+
+def test_damping_holds_from_the_beginning_of_force_mode_to_its_end(bench):
+    mode = "force_mode(p[0,0,0,0,0,0], [0,0,1,0,0,0], [0,0,{},0,0,0], 2, [1,1,0.1,1,1,1])\nsync()\n"
+    bench.box.load(
+        "force_mode_set_damping(0.5)\n"
+        + mode.format(1)
+        + "force_mode_set_damping(0.1)\n"
+        + mode.format(2)
+        + "sleep(1)\n"
+        + "end_force_mode()\n"
+        + mode.format(2)
+        + "sleep(1)\n"
+    )
+    bench.run(0.5)
+    assert (bench.box.arm.force_mode.wrench[2], bench.box.arm.force_mode.damping) == (2, 0.5)
+    bench.run(1.0)
+    assert bench.box.arm.force_mode.damping == 0.1

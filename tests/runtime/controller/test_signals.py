@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from runtime.controller.signals import SignalError, Signals, parse_digital_input
+from runtime.controller.signals import SignalError, Signals, parse_digital
 
 _TERMINALS = st.sampled_from(
     [("standard", n) for n in range(8)]
@@ -47,10 +47,10 @@ def test_a_mask_names_the_outputs_that_change():
 
 
 def test_names_of_inputs_are_read_and_wrong_ones_explained():
-    assert parse_digital_input("tool_digital_in_1") == ("tool", 1)
+    assert parse_digital("tool_digital_in_1", "in") == ("tool", 1)
     for name in ("tool_digital_in_2", "tool_digital_out_0", "standard_digital_in_10", "x"):
         with pytest.raises(SignalError, match=f"there is no input '{name}'"):
-            parse_digital_input(name)
+            parse_digital(name, "in")
 
 
 def test_a_terminal_that_is_not_there_is_refused():

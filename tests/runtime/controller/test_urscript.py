@@ -169,6 +169,8 @@ def test_what_is_no_program_is_refused_with_a_sentence(text, words):
         ("open(1)", "open() is not supported by this stand-in controller"),
         ("eval(1)", "eval() is not supported by this stand-in controller"),
         ("say(missing)", "'missing' has no value yet"),
+        ("def late():\n say(x)\n x = 1\nend", "'x' has no value yet"),
+        ("if [1] < 2:\n say(1)\nend", "these two cannot be compared with <"),
         ("say(1 / 0)", "a division by zero"),
         ("say([1][3])", "index 3 is outside a list of 1"),
         ("say([1][0 - 1])", "index -1 is outside a list of 1"),

@@ -1,8 +1,12 @@
 from __future__ import annotations
 
+import signal
+import time
+
 import pytest
 
 from aapa import Anchor, AnchorStatus
+from icarus_lite import Status
 from runtime.config import load_robot
 from runtime.drivers import ArmState
 from runtime.drivers.limits import tcp_matrix
@@ -61,3 +65,44 @@ def scene(anchor, parts):
         return anchors
 
     return _scene
+
+
+@pytest.fixture(scope="session")
+def run():
+    """Poll as the loop does, once a cycle, until the action has ended."""
+
+    def _run(driver, anchors, each=lambda: None, *, within_s=60.0, cycle_s=0.01):
+        deadline = time.monotonic() + within_s
+        while time.monotonic() < deadline:
+            outcome = driver.poll(anchors())
+            if outcome is None or outcome.status is not Status.RUNNING:
+                return outcome
+            each()
+            signal.sigtimedwait([], cycle_s)
+        return pytest.fail(f"the action did not end within {within_s} s")
+
+    return _run
+
+
+@pytest.fixture(scope="session")
+def await_that():
+    """Wait for a condition, with a deadline."""
+
+    def _await(condition, within_s=15.0):
+        deadline = time.monotonic() + within_s
+        while not condition():
+            assert time.monotonic() < deadline, "the condition never came true"
+            signal.sigtimedwait([], 0.005)
+
+    return _await
+
+
+@pytest.fixture(scope="session")
+def stands_still():
+    """Whether a controller's arm stands still."""
+
+    def _stands_still(controller):
+        speeds = controller.bench({"query": "state"})["joint_speeds"]
+        return max(map(abs, speeds)) < 1e-6
+
+    return _stands_still

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from icarus_lite import Action, Outcome, Status
-from runtime.drivers import DryRunDriver, Grip, MoveJoints, MoveLinear
+from runtime.drivers import DryRunDriver, Grip, MoveJoints, MoveLinear, Press, Tare, Turn
 from runtime.drivers.limits import tcp_matrix
 from runtime.errors import UsageError
 
@@ -64,12 +64,15 @@ def test_a_hub_cover_is_picked_up_and_inserted(driver, anchored, parts):
     assert off == pytest.approx((0.0, 0.0, parts["hubcover"].grasp_height_m), abs=1e-6)
     assert [type(step) for step in driver.log] == [
         MoveJoints,
+        Tare,
         MoveLinear,
         Grip,
         MoveLinear,
         MoveJoints,
         MoveJoints,
+        Tare,
         MoveLinear,
+        Press,
         Grip,
     ]
 
@@ -222,3 +225,67 @@ def test_it_looks_for_as_many_cycles_as_configured(config, parts, scene):
         _, places = run(driver, lambda held=anchors: held)
         polls.append(len(places))
     assert polls[1] - polls[0] == 30 - config.look_cycles
+
+
+SCREW = Action("screw-in", ("hand1", "plug-1", "case"))
+UNSCREW = Action("unscrew", ("hand1", "plug-1", "case"))
+
+
+def test_a_plug_is_screwed_in_and_out_again(driver, scene, parts, config):
+    seat = parts["plug"].seats[0]
+    case = (0.40, 0.16, 0.035)
+    seated = tuple(a + b for a, b in zip(case, seat.offset, strict=True))
+
+    def anchored():
+        x, y, z = driver.state().tcp_pose[:3]
+        plug = (x, y, z - parts["plug"].grasp_height_m)
+        return scene(hand1=(x, y, z), **({"plug-1": plug} if driver.state().gripped else {}))
+
+    pick = Action("grasp", ("hand1", "plug-1"))
+    driver.start(pick, (pick,), anchored())
+    run(driver, anchored)
+    driver.start(SCREW, (SCREW,), anchored())
+    outcome, _ = run(driver, anchored, polls=4000)
+    assert outcome.status is Status.SUCCEEDED, outcome.reason
+    turns = [step for step in driver.log if isinstance(step, Turn)]
+    assert len(turns) == 3, "four turns are more than wrist 3 has in two strokes"
+    assert outcome.reason.startswith("4.00 turns in all")
+    place = driver.state().tcp_pose
+    assert place[:2] == pytest.approx(seated[:2], abs=1e-6)
+    assert place[2] == pytest.approx(seated[2] + parts["plug"].grasp_height_m, abs=1e-6)
+    assert not driver.state().gripped
+
+    def screwed():
+        x, y, z = driver.state().tcp_pose[:3]
+        return scene(**{"hand1": (x, y, z), "plug-1": seated})
+
+    driver.start(UNSCREW, (UNSCREW,), screwed())
+    outcome, _ = run(driver, screwed, polls=4000)
+    assert outcome.status is Status.SUCCEEDED, outcome.reason
+    assert driver.state().gripped
+    assert driver.state().tcp_pose[2] == pytest.approx(config.heights.transit_m)
+
+
+def test_the_virtual_wrist_keeps_to_its_range_and_speed(driver, scene, parts, config):
+    driver._gripped = driver._closed = True
+    limit = config.workspace.joint_limit_rad
+
+    def anchored():
+        x, y, z = driver.state().tcp_pose[:3]
+        return scene(**{"hand1": (x, y, z), "plug-1": (x, y, z - parts["plug"].grasp_height_m)})
+
+    driver.start(SCREW, (SCREW,), anchored())
+    wrist, told = [driver.state().joints[5]], []
+    while driver.poll(anchored()).status is Status.RUNNING:
+        state = driver.state()
+        wrist.append(state.joints[5])
+        told.append((state.gripped, state.regrips))
+    opened = [regrips for gripped, regrips in told if not gripped]
+    first_for_good = opened.index(False)
+    assert all(opened[:first_for_good]), "the hand opens to take hold again"
+    assert first_for_good > 0
+    assert not any(opened[first_for_good:]), "and lets go in the end"
+    assert not driver.state().regrips
+    assert max(map(abs, wrist)) <= limit
+    speeds = np.abs(np.diff(wrist)) / 0.1
+    assert speeds.max() <= max(config.speeds.joint, config.force.turning_speed) + 1e-9

@@ -6,7 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from runtime.drivers.ur_connection import check_version, pose_error
+from runtime.drivers.ur_connection import pose_error
+from runtime.drivers.ur_dashboard import check_version
 from runtime.errors import ControllerError
 
 

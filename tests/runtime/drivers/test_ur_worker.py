@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
+import itertools
+import re
 
 import pytest
 
 from runtime.drivers import ArmState, Grip, MoveJoints
 from runtime.drivers.limits import tcp_matrix
-from runtime.drivers.steps import MoveLinear
+from runtime.drivers.steps import MoveLinear, Press, Tare
 from runtime.drivers.ur_link import Begin, Close, Ended, Ready, StateBoard, Stop
 from runtime.drivers.ur_worker import _Worker
 from runtime.errors import DriverError
@@ -37,6 +39,9 @@ class Arm:
         self.lost_at = behaviour.get("lost_at", float("inf"))
         self.until = 0.0
         self.done = []
+        self.bias = behaviour.get("bias", (0.0,) * 6)
+        self.felt_n = 0.0
+        self.pushes = 0
 
     def state(self):
         self.clock += 0.05
@@ -89,8 +94,22 @@ class Arm:
         if self.switches:
             self.closed = close
 
-    def set_payload(self, mass_kg):
+    def set_payload(self, mass_kg, _centre_of_gravity_m):
         self.done.append(mass_kg)
+
+    def wrench(self):
+        return (*self.bias[:2], self.bias[2] + self.felt_n, *self.bias[3:])
+
+    def zero_force(self):
+        self.done.append("zero")
+
+    def push(self, _push, _frame):
+        self.pushes += 1
+        if self.done[-1:] != ["push"]:
+            self.done.append("push")
+
+    def end_push(self):
+        self.done.append("end push")
 
     def end_program(self):
         self.done.append("end program")
@@ -175,7 +194,8 @@ def test_a_move_is_not_made_from_anywhere_else_than_planned(config, move):
     assert arm.done == []
 
 
-def test_a_move_that_does_not_begin_is_given_up(config, move):
+def test_a_move_that_does_not_begin_is_given_up(config, move, monkeypatch):
+    monkeypatch.setattr("runtime.drivers.ur_worker._BEGIN_WITHIN_S", 0.05)
     arm = Arm(config, begins=False)
     assert "was not begun by the controller in time" in carry_out(config, arm, move)
     assert arm.done == ["move", "stop"]
@@ -186,6 +206,21 @@ def test_a_move_that_does_not_end_is_stopped(config, move):
     assert "was not finished in time" in carry_out(config, arm, move)
     assert arm.done == ["move", "stop"]
     assert arm.clock < 3.0
+
+
+def test_a_move_that_begins_late_has_its_whole_time(config, move):
+    # On a fast clock much robot time passes while an order is on its way.
+    arm = Arm(config, takes_s=1.0)
+    begun = arm.move
+
+    def late(step):
+        before = begun(step)
+        arm.clock += 100.0
+        arm.until = arm.clock + 1.0
+        return before
+
+    arm.move = late
+    assert carry_out(config, arm, move) == ""
 
 
 def test_a_turned_down_speed_slider_is_waited_for(config, move):
@@ -267,3 +302,107 @@ def test_a_grip_that_does_not_feel_as_expected_has_failed(config, close, feels, 
         )
     assert carry_out(quick, arm, Grip(close, close, 1.0)) == reason
     assert arm.done == ["close" if close else "open"]
+
+
+@pytest.fixture
+def press(config):
+    pose = matrix_to_pose(tcp_matrix(config, config.look_joints))
+    return Press(
+        (*pose[:2], pose[2] - 0.03, *pose[3:]),
+        config.look_joints,
+        config.look_joints,
+        length_m=0.03,
+        press_n=12.0,
+        search_m=0.006,
+        spiral_m=0.002,
+        tolerance_m=0.001,
+    )
+
+
+def test_the_force_sensor_is_zeroed_and_what_is_left_is_taken_off(config):
+    arm = Arm(config, bias=(3.0, -2.0, 9.0, 0.1, 0.0, 0.2))
+    worker = _Worker(arm, Orders(Begin(5, Tare())), StateBoard(), config)
+    worker.run()
+    assert arm.done == ["zero", "end program"]
+    arm.felt_n = 12.0
+    assert worker._sensor.read().wrench == pytest.approx((0.0, 0.0, 12.0, 0.0, 0.0, 0.0))
+
+
+@pytest.mark.parametrize(
+    ("bias", "shaken", "reason"),
+    [
+        ((0.0, 0.0, 40.0, 0.0, 0.0, 0.0), 0.0, "shows 40 N with nothing touched"),
+        ((0.0,) * 6, 8.0, r"swings by \d+ N while the arm stands still"),
+    ],
+)
+def test_a_force_sensor_that_cannot_be_zeroed_is_not_worked_with(config, bias, shaken, reason):
+    arm = Arm(config, bias=bias)
+    measured, signs = arm.wrench, itertools.cycle((1, -1))
+
+    def wrench():
+        x, y, z, *moments = measured()
+        return (x + next(signs) * shaken, y, z, *moments)
+
+    arm.wrench = wrench
+    assert re.search(reason, carry_out(config, arm, Tare()))
+
+
+def test_a_press_is_not_begun_from_anywhere_else_than_planned(config, press):
+    arm = Arm(config)
+    arm.at = (press.start[0] + 0.02, *press.start[1:])
+    assert "from where the motion was planned to start" in carry_out(config, arm, press)
+    assert arm.pushes == 0
+
+
+def test_a_press_that_fails_ends_force_mode(config, press):
+    arm = Arm(config)
+    arm.felt_n = 90.0
+    assert carry_out(config, arm, press).startswith("it met 90 N, more than the 60 N allowed")
+    assert arm.done == ["push", "end push"]
+
+
+def test_a_stop_in_the_middle_of_a_press_ends_force_mode(config, press):
+    arm, orders = Arm(config), Orders(Begin(1, press))
+    pushed = arm.push
+
+    def push_and_stop(push, frame):
+        if arm.pushes == 3:
+            orders.waiting += [Stop(), Close()]
+        pushed(push, frame)
+
+    arm.push = push_and_stop
+    assert serve(config, arm, orders) == [Ready("3.15.0")]
+    assert arm.done == ["push", "end push", "end program"]
+
+
+def test_without_a_driver_force_mode_is_ended(config, press):
+    arm, orders = Arm(config), Orders(Begin(1, press))
+    pushed = arm.push
+
+    def push_and_lose_the_driver(push, frame):
+        orders.gone = True
+        pushed(push, frame)
+
+    arm.push = push_and_lose_the_driver
+    serve(config, arm, orders)
+    assert arm.done == ["push", "end push", "end program"]
+
+
+def test_an_arm_lost_in_the_middle_of_a_press_is_not_talked_to_any_more(config, press):
+    arm = Arm(config, lost_at=0.5)
+    with pytest.raises(DriverError, match="the cable was cut"):
+        carry_out(config, arm, press)
+    assert arm.done == ["push"]
+
+
+def test_a_guarded_way_down_ends_where_it_meets_something(config, move):
+    pose = matrix_to_pose(tcp_matrix(config, move.joints))
+    down = MoveLinear(pose, move.joints, move.start, 0.1, guarded=True)
+    arm = Arm(config, takes_s=0.5)
+    arm.felt_n = 80.0
+    reason = carry_out(config, arm, down)
+    assert reason == "on its way down the tool met 80 N, more than the 60 N allowed"
+    assert arm.done == ["move", "stop"]
+    heedless = Arm(config, takes_s=0.5)
+    heedless.felt_n = 80.0
+    assert carry_out(config, heedless, dataclasses.replace(down, guarded=False)) == ""

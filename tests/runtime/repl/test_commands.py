@@ -86,7 +86,7 @@ def test_goal_plan_path_candidates(session: Session) -> None:
 
 
 def test_why_and_why_not(session: Session) -> None:
-    assert ask(session, "why (attached hubcover case)") == (
+    assert ask(session, "why (attached hubcover case)").startswith(
         "(attached hubcover case)  because (insert hubcover case) succeeded, reported in cycle 2"
     )
     assert "hubcover" in ask(session, "why all (fits ?a ?b)")

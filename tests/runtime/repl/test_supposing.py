@@ -23,7 +23,7 @@ def test_assuming_percepts_attachments_and_effects(session: Session) -> None:
     ]
     assert "+ (attached case hand1)" in ask(session, "assume (attached case hand1)")
     assert ask(session, "(attached ?x hand1)").count("\n(attached") == 2
-    assert ask(session, "assume (object new ^type plug)").endswith("+ (graspable new)")
+    assert ask(session, "assume (object new ^type bearing)").endswith("+ (graspable new)")
     assert "supposed: assumed (object new)" in ask(session, "where")
 
 

@@ -14,6 +14,8 @@ from aapa.detections import Box
 from aapa.lacater.models.plus.ground import GroundView, Place
 from aapa.lacater.models.plus.solids import SNITCH_SOLID
 
+_Measured = tuple[Place, float, float]
+
 _MOST: Final = 48
 _WORST_PX: Final = 2.0
 _ALIKE: Final = 0.7
@@ -24,10 +26,12 @@ _DOUBT: Final = 0.2
 class Appearance:
     """The boxes in which the snitch was seen upon the floor, one for each place."""
 
-    __slots__ = ("_boxes",)
+    __slots__ = ("_boxes", "_measured", "_view")
 
     def __init__(self) -> None:
         self._boxes: list[Box] = []
+        self._view: GroundView | None = None
+        self._measured: dict[Box, _Measured | None] = {}
 
     def forget(self) -> None:
         """It has been turned, and may look different from now on."""
@@ -41,6 +45,7 @@ class Appearance:
             again: It stands where it stood: this is what is known of that place by now.
         """
         if again and self._boxes:
+            self._measured.pop(self._boxes[-1], None)
             self._boxes[-1] = box
         elif not self._boxes or box != self._boxes[-1]:
             if len(self._boxes) == _MOST:
@@ -57,21 +62,38 @@ class Appearance:
         Returns:
             In units of the scene, at its depth; 0 where it was never seen in full.
         """
+        if view != self._view:
+            self._view = view
+            self._measured.clear()
         wide = tall = count = 0.0
         for box in self._boxes:
-            place = view.place(SNITCH_SOLID, box) if min(view.free_edges(box)) else None
-            if place is None:
+            if box not in self._measured:
+                self._measured[box] = _measured(view, box)
+            measured = self._measured[box]
+            if measured is None:
                 continue
-            try:
-                a, b, c, d = view.box(SNITCH_SOLID, place)
-            except ValueError:
-                continue
-            across, down = (box[2] - box[0] - c + a) / 2, (box[3] - box[1] - d + b) / 2
-            if max(abs(across), abs(down)) > _WORST_PX:
-                continue  # Lifted off the floor, or half of it out of sight.
-            scale = view.depth(place, SNITCH_SOLID.low) / view.focal
+            place, across, down = measured
             far = math.dist(place, where) / _ALIKE
             weight = 1.0 / (1.0 + far * far)
-            wide, tall = wide + weight * across * scale, tall + weight * down * scale
+            wide, tall = wide + weight * across, tall + weight * down
             count += weight
         return wide / (count + _DOUBT), tall / (count + _DOUBT)
+
+
+def _measured(view: GroundView, box: Box) -> _Measured | None:
+    """Give where the ball stands that has a box, and how much farther the box reaches than it.
+
+    None where that is no box of it upon the floor, seen in full.
+    """
+    place = view.place(SNITCH_SOLID, box) if min(view.free_edges(box)) else None
+    if place is None:
+        return None
+    try:
+        a, b, c, d = view.box(SNITCH_SOLID, place)
+    except ValueError:
+        return None
+    across, down = (box[2] - box[0] - c + a) / 2, (box[3] - box[1] - d + b) / 2
+    if max(abs(across), abs(down)) > _WORST_PX:
+        return None  # Lifted off the floor, or half of it out of sight.
+    scale = view.depth(place, SNITCH_SOLID.low) / view.focal
+    return place, across * scale, down * scale

@@ -71,12 +71,23 @@ def belief(
         unseen: For how many frames it has not been seen.
         moves: Its outermost container is moving.
     """
+    said = _sentence(ground, containers, unseen, moves=moves)
+    sure = confidence(ground, containers[-1] if containers else OUTSIDE, rivals)
+    return Belief(said, sure, rivals)
+
+
+def confidence(ground: Ground, held: str, rivals: Sequence[Rival] = ()) -> float:
+    """Give how sure a belief is, in [0, 1].
+
+    Args:
+        ground: What it rests on.
+        held: The outermost thing that the snitch stands in; `OUTSIDE` if in none.
+        rivals: All places that are possible, where that is in doubt.
+    """
     weight = 1.0
     if rivals and ground in (Ground.INFERRED, Ground.REMEMBERED, Ground.GOES_ON):
-        held = containers[-1] if containers else OUTSIDE
         weight = next((rival.weight for rival in rivals if rival.container == held), 1.0)
-    said = _sentence(ground, containers, unseen, moves=moves)
-    return Belief(said, round(SURE[ground] * weight, 3), rivals)
+    return round(SURE[ground] * weight, 3)
 
 
 def _sentence(ground: Ground, containers: Sequence[str], unseen: int, *, moves: bool) -> str:

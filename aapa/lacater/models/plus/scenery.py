@@ -134,15 +134,26 @@ class Scenery:
             return self.view
         if self.view is None or len(self._samples) > self._sampled:
             self._sampled = len(self._samples)
-            now = [
-                (solid, box)
-                for name, solid in self.solids.items()
-                if self.things[name].seen
-                and not self.things[name].roaming
-                and (box := self.box_of(name)) is not None
-            ]
-            self.view = calibrated(self.view or START_VIEW, [*self._samples, *now]) or self.view
+            self.view = self.estimate(self.view) or self.view
         return self.view
+
+    def estimate(self, guess: GroundView | None) -> GroundView | None:
+        """Find out where the camera stands by all that is at rest, and was; keep nothing of it.
+
+        Args:
+            guess: Where to start, if anything is known.
+
+        Returns:
+            None where that does not determine a camera.
+        """
+        now = [
+            (solid, box)
+            for name, solid in self.solids.items()
+            if self.things[name].seen
+            and not self.things[name].roaming
+            and (box := self.box_of(name)) is not None
+        ]
+        return calibrated(guess or START_VIEW, [*self._samples, *now])
 
     def tell_apart(self, name: str, box: Box) -> None:
         """Of several alike, take the one that is nearest to a box for the one of this name."""

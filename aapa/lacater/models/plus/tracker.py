@@ -22,13 +22,16 @@ from aapa.lacater.models.plus.containment import REACH
 from aapa.lacater.models.plus.ground import GroundView, Place
 from aapa.lacater.models.plus.hiding import behind
 from aapa.lacater.models.plus.ideas import Ideas
+from aapa.lacater.models.plus.insight import Insight
 from aapa.lacater.models.plus.paths import Path
-from aapa.lacater.models.plus.reasons import Belief, Ground, belief
+from aapa.lacater.models.plus.reasons import Belief, Ground, belief, confidence
+from aapa.lacater.models.plus.rivals import OUTSIDE
 from aapa.lacater.models.plus.scenery import Boxes, Scenery
 from aapa.lacater.models.plus.solids import SNITCH_SOLID
 from aapa.lacater.models.plus.standing import TRIM_SHARE, foot_of, stands
 from aapa.lacater.models.plus.suspicion import Suspicion
 from aapa.lacater.models.plus.things import STILL, Thing, distance
+from aapa.lacater.models.rounding import rounded
 
 SLID: Final = frozenset({"slide"})
 """Actions that push a thing along the floor, with all that stands in it."""
@@ -108,6 +111,23 @@ class BeyondAapa:
         )
 
     @property
+    def confidence(self) -> float:
+        """How sure that is, in [0, 1]."""
+        held = self._belonging.outermost(self._snitch)
+        outside = held == self._snitch
+        return confidence(self._ground, OUTSIDE if outside else held, self._suspicion.ranked)
+
+    @property
+    def insight(self) -> Insight:
+        """What the last answer was made of, before it was rounded."""
+        name, scenery = self._snitch, self._scenery
+        outermost = self._belonging.outermost(name)
+        path = self._paths.get(name) or self._paths.get(outermost)
+        trim = self._trim if self._bond is None else self._bond.trim
+        known = self._box, self._ground, scenery, self._appearance
+        return Insight(*known, name, outermost, path, trim)
+
+    @property
     def parents(self) -> Mapping[str, str]:
         """What is believed to stand in what, child to parent, reported or inferred."""
         return self._belonging.parents
@@ -176,9 +196,12 @@ class BeyondAapa:
     # What is seen
 
     def _believed(self, boxes: Boxes) -> Boxes:
-        """Of boxes of the snitch, give those that show it, though it may be contained."""
+        """Of boxes of the snitch, give those that show it, though it may be contained.
+
+        Where it was never seen, any sighting says more than none.
+        """
         if self._belonging.is_reported(self._snitch):
-            return [] if self._ideas.lock else boxes
+            return [] if self._ideas.lock and self._box is not None else boxes
         if self._snitch not in self._belonging.parents or self._box is None:
             return boxes
         here = self._box
@@ -370,14 +393,3 @@ class BeyondAapa:
         lost = self._scenery.things[root].missed > 0
         self._bond = Bond(root, place, trim, box, self._box, self._box, box, lost)
         return self._bond
-
-
-def rounded(box: Box) -> Box:
-    """Round a box as labels are: the corner, and by themselves the width and the height.
-
-    Example:
-        >>> rounded((0.4, 0.6, 10.8, 10.8))
-        (0, 1, 10, 11)
-    """
-    x, y = round(box[0]), round(box[1])
-    return x, y, x + round(box[2] - box[0]), y + round(box[3] - box[1])

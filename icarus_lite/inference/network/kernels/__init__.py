@@ -7,15 +7,42 @@ change whenever some of them have moved. Rules that see the same objects are fol
 `PairGroup` as long as nothing about them is unusual.
 """
 
-from icarus_lite.inference.network.kernels.columns import Columns
-from icarus_lite.inference.network.kernels.exact import PairSide
-from icarus_lite.inference.network.kernels.group import PairGroup
-from icarus_lite.inference.network.kernels.group_members import Member
-from icarus_lite.inference.network.kernels.group_program import GroupProgram, compile_group
-from icarus_lite.inference.network.kernels.kernel import PairKernel, compile_pair
-from icarus_lite.inference.network.kernels.relation import Change, Pair, PairRelation
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from icarus_lite._on_use import imported_on_use
+
+if TYPE_CHECKING:
+    from icarus_lite.inference.network.kernels.columns import Columns
+    from icarus_lite.inference.network.kernels.exact import PairSide
+    from icarus_lite.inference.network.kernels.group import PairGroup
+    from icarus_lite.inference.network.kernels.group_members import Member
+    from icarus_lite.inference.network.kernels.group_program import GroupProgram, compile_group
+    from icarus_lite.inference.network.kernels.kernel import PairKernel, compile_pair
+    from icarus_lite.inference.network.kernels.matrix import MatrixRelation
+    from icarus_lite.inference.network.kernels.order import OrderRelation
+    from icarus_lite.inference.network.kernels.relation import Change, Pair, PairRelation
+
+_HOMES = {
+    "Change": "relation",
+    "Columns": "columns",
+    "GroupProgram": "group_program",
+    "MatrixRelation": "matrix",
+    "Member": "group_members",
+    "OrderRelation": "order",
+    "Pair": "relation",
+    "PairGroup": "group",
+    "PairKernel": "kernel",
+    "PairRelation": "relation",
+    "PairSide": "exact",
+    "compile_group": "group_program",
+    "compile_pair": "kernel",
+}
 
 __all__ = [
-    "Change", "Columns", "GroupProgram", "Member", "Pair", "PairGroup", "PairKernel",
-    "PairRelation", "PairSide", "compile_group", "compile_pair",
+    "Change", "Columns", "GroupProgram", "MatrixRelation", "Member", "OrderRelation", "Pair",
+    "PairGroup", "PairKernel", "PairRelation", "PairSide", "compile_group", "compile_pair",
 ]  # fmt: skip
+
+__getattr__ = imported_on_use(__name__, _HOMES)

@@ -9,14 +9,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from struct import Struct
-from typing import TypeAlias
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import TYPE_CHECKING, TypeAlias
 
 from icarus_lite.symbols import Value
 
-Numbers: TypeAlias = NDArray[np.float64]
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+Numbers: TypeAlias = "NDArray[np.float64]"
 """One number a slot, or one number a pair of slots."""
 
 PLAIN = 2.0**20
@@ -81,7 +82,8 @@ class Columns:
         self.unusual: set[int] = set()
         self._free: list[int] = []
         self._leaving: dict[Value, int] = {}
-        self._arrays: list[Numbers] = [np.zeros(16) for _ in attributes]
+        # None until a kernel asks: a domain without kernels never needs numpy.
+        self._arrays: list[Numbers | None] = [None] * len(attributes)
         self._packed = 0, Struct("0d")
         # For each attribute the slots in which its array is out of date; None if all of it is.
         self._stale: list[list[int] | None] = [[] for _ in attributes]
@@ -154,7 +156,8 @@ class Columns:
             else:
                 column[first : first + count] = values
                 array = self._arrays[place]
-                if plain and len(array) >= size and (count == size or stale == []):
+                fits = plain and (count == size or stale == [])
+                if fits and array is not None and len(array) >= size:
                     self._pack(array, first, values)
                     self._stale[place] = []
                     continue
@@ -213,7 +216,7 @@ class Columns:
         """Give the values of an attribute by slot as floats: (size,); 0 where one is no number."""
         place = self.places[attribute]
         array, stale = self._arrays[place], self._stale[place]
-        if stale or stale is None or self.size > len(array):
+        if array is None or stale or stale is None or self.size > len(array):
             array = self._refreshed(place)
         return array[: self.size]
 
@@ -242,8 +245,10 @@ class Columns:
     def _refreshed(self, place: int) -> Numbers:
         """Bring an attribute's array up to date; give it, spare room included."""
         array, stale, column = self._arrays[place], self._stale[place], self.lists[place]
-        if self.size > len(array):
-            array = self._arrays[place] = np.zeros(2 * self.size)
+        if array is None or self.size > len(array):
+            import numpy as np  # noqa: PLC0415 - as above
+
+            array = self._arrays[place] = np.zeros(max(16, 2 * self.size))
             stale = None
         if stale is not None:
             for slot in stale:

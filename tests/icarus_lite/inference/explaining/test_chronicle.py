@@ -3,6 +3,7 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
+from icarus_lite.inference import Withdrawal
 from icarus_lite.inference.explaining import Chronicle, Period, what_ended
 from icarus_lite.language import parse_atom, parse_domain
 from icarus_lite.symbols import Action, Belief, Outcome, Status
@@ -156,3 +157,29 @@ def test_what_was_over_long_ago_is_forgotten() -> None:
         cycle for cycle, _ in whole.reports() if cycle >= short.first
     ]
     assert [belief for belief, _ in short.matching(parse_atom("(p ?x)"))] == [r, p]
+
+
+def test_a_contradiction_is_blamed_before_any_action() -> None:
+    withdrawal = Withdrawal(HOLDING, ("(hand h ^empty yes)", "(not (moves o))"), 2)
+    chronicle = Chronicle()
+    chronicle.record(0, [HOLDING, ATTACHED], [])
+    chronicle.record(1, [], [HOLDING, ATTACHED], [done("drop", "h")], withdrawn=[withdrawal])
+    period = Period(0, 0)
+    assert what_ended(HOLDING, period, chronicle, DOMAIN) == (
+        "withdrawn in cycle 1, because (hand h ^empty yes) and (not (moves o)) held for 2 cycles"
+    )
+    assert what_ended(ATTACHED, period, chronicle, DOMAIN).startswith("(drop h) detached it")
+    assert list(chronicle.withdrawals()) == [(1, withdrawal)]
+
+
+def test_what_was_withdrawn_is_forgotten_with_its_cycle() -> None:
+    chronicle = Chronicle(changes_kept=4)
+    for cycle in range(0, 20, 2):
+        belief = Belief("holding", ("h", f"o{cycle}"))
+        chronicle.record(cycle, [belief], [])
+        chronicle.record(cycle + 1, [], [belief], withdrawn=[Withdrawal(belief, ("(p)",))])
+    kept = [cycle for cycle, _ in chronicle.withdrawals()]
+    assert kept == [17, 19]
+    assert chronicle.first == 16
+    assert chronicle.periods(Belief("holding", ("h", "o16"))) == (Period(16, 16),)
+    assert chronicle.periods(Belief("holding", ("h", "o14"))) == ()

@@ -101,3 +101,14 @@ def test_files_share_their_names_but_not_their_variables():
     assert [each.path for each in big] == ["it", "it", "it", "other"]
     word = index.at("other", other.index("?o"))
     assert {each.path for each in index.occurrences(index.thing("other", word))} == {"other"}
+
+
+def test_what_only_a_task_gives_is_known_as_well(reading):
+    task = "(task t :init ((sealed o1) (object o1) (big o1) (attached o1 h)) :goal ((seald o1)))"
+    index = reading(TEXT + task)
+    assert index.origins("sealed") == (Origin.GIVEN,)
+    assert index.origins("object") == (Origin.PERCEPT,)
+    assert index.origins("big") == (Origin.CONCEPT,)
+    assert index.origins("attached") == (Origin.ATTACHMENT,)
+    assert "sealed" in index.names(Role.PREDICATE)
+    assert "seald" not in index.names(Role.PREDICATE)

@@ -129,8 +129,8 @@ def test_the_export_of_task_1_1_is_this(root: Path) -> None:
         "  (:domain gearbox)\n"
         "  (:objects hand1 - hand hubcover case - thing)\n"
         "  (:init (graspable hubcover) (fits hubcover case)"
-        " (in-reachable-pose-measured hand1 hubcover)\n"
-        "    (in-reachable-pose-measured hand1 case))\n"
+        " (object-type-case case)\n"
+        "    (in-reachable-pose-measured hand1 hubcover) (in-reachable-pose-measured hand1 case))\n"
         "  (:goal (attached hubcover case))\n"
         ")\n"
     )
@@ -345,3 +345,22 @@ def test_what_pddl_cannot_say_is_refused(text: str, message: str) -> None:
 def test_a_plain_export_needs_nothing_beyond_typed_strips() -> None:
     result, _, _ = exported(NUMBERS)
     assert "(:requirements :strips :typing)" in write_domain(result.domain)
+
+
+def test_contradictions_are_left_out_with_a_remark() -> None:
+    text = """
+    (percepts (object ^x))
+    (concepts ((apart ?a ?b) :elements ((object ?a ^x 1) (object ?b ^x 2))))
+    (skills ((put ?a ?b) :elements ((object ?a) (object ?b)) :actions ((*put ?a ?b))
+                         :effects ((on ?a ?b))))
+    {}
+    (task t :init ((object a ^x 1) (object b ^x 1)) :goal ((on a b)))"""
+    rule = "(contradictions ((on ?a ?b) :elements ((apart ?a ?b)) :cycles 3))"
+    remark = "Contradictions are left out: no plan counts on a surprise."
+    (with_it, _, _), (without, _, _) = exported(text.format(rule)), exported(text.format(""))
+    assert remark in with_it.remarks
+    assert remark not in without.remarks
+    assert (with_it.domain.actions, with_it.domain.rules) == (
+        without.domain.actions,
+        without.domain.rules,
+    )

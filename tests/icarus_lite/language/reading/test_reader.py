@@ -251,7 +251,9 @@ def test_spans_of_clauses_conditions_and_tests_point_at_their_text():
             assert_spans_inside(test)
         for condition in clause.elements:
             assert text_at(condition.span).startswith("(not ") is condition.negated
-    assert [text_at(task.span)[:9] for task in domain.tasks] == ["(task 1.1"] * len(domain.tasks)
+    assert [text_at(task.span)[:9] for task in domain.tasks] == [
+        f"(task {task.name}" for task in domain.tasks
+    ]
 
 
 def test_a_hundred_kilobytes_are_read_in_about_a_second():

@@ -18,7 +18,7 @@ from aapa.lacater.models import ActionReport, Frame, model_named
 from aapa.lacater.models.plus.ground import GroundView
 from aapa.lacater.models.plus.hiding import STICKS_OUT
 from aapa.lacater.models.plus.solids import SNITCH_SOLID, solid_of
-from aapa.lacater.models.plus.tracker import rounded
+from aapa.lacater.models.rounding import rounded
 
 VIEW = GroundView(height=5.3, pitch=0.5, focal=350.0, size=(320, 240))
 SNITCH, LARGE, MEDIUM, BALL, CUBE = 140, 4, 64, 67, 1
@@ -250,6 +250,20 @@ def test_with_a_given_camera_the_model_needs_it():
 def test_before_the_snitch_is_seen_there_is_no_box():
     empty = Frame(0, np.zeros((0, 4), dtype=np.int64), np.zeros(0, dtype=np.int64))
     assert follow([empty]) == [None]
+
+
+def test_a_snitch_that_was_contained_before_it_was_ever_seen_has_a_box_from_its_first_sighting():
+    late = 30
+    place = box_at(SNITCH, on_the_way(late))
+    frames = [
+        replace(frame, boxes=frame.boxes[keep], classes=frame.classes[keep])
+        for frame in film(extra=[(late, SNITCH, place)])
+        for keep in [(frame.classes != SNITCH) | (frame.number == late)]
+    ]
+    boxes = follow(frames)
+    assert all(box is None for box in boxes[:late])
+    assert boxes[late] == place
+    assert all(box is not None for box in boxes[late:])
 
 
 def test_reports_of_things_that_nobody_knows_are_left_out_of_account():
