@@ -34,6 +34,7 @@ _KICK_EVERY_S: Final = 0.02
 _LONGEST_BLINK_S: Final = 0.02  # looks are 4 ms apart, unless this process was kept waiting
 _MODEL_WITHIN_M: Final = 0.02  # factory calibration moves a real arm by a few millimetres
 _TCP_WITHIN_S: Final = 2.0
+_PROGRAM_WITHIN_S: Final = 2.0
 _FORCE_FRAME_AS_GIVEN: Final = 2  # of force mode's types, the one that does not turn the frame
 
 _REFUSALS: Final = {
@@ -70,11 +71,7 @@ class UrConnection:
         self._pushing = False
         self._io: Any = _construct(RTDEIOInterface, address, "digital outputs")
         self._control: Any = _construct(RTDEControlInterface, address, "control program")
-        if self._receive.getRuntimeState() != _PLAYING:
-            raise ControllerError(
-                f"{address}: the control program was uploaded but does not run; see the "
-                "controller's log on the teach pendant"
-            )
+        self._await_program()
         self._control.setTcp(list(config.tcp))
         self.set_payload(config.payload.gripper_kg)
         self._control.setWatchdog(config.watch.watchdog_hz)
@@ -224,6 +221,17 @@ class UrConnection:
     def _safety(self) -> str:
         words = stop_in_words(self._receive.getSafetyMode())
         return f"the arm is in {words}{ONLY_ON_YOUR_WORD}" if words else ""
+
+    def _await_program(self) -> None:
+        """See that the uploaded program runs. The state stream may be a few states behind."""
+        deadline = time.monotonic() + _PROGRAM_WITHIN_S
+        while self._receive.getRuntimeState() != _PLAYING:
+            if time.monotonic() > deadline:
+                raise ControllerError(
+                    f"{self._address}: the control program was uploaded but does not run; see the "
+                    "controller's log on the teach pendant"
+                )
+            time.sleep(0.005)
 
     def _await_tool(self) -> None:
         """Check that the arm out there is the one configured: joints and tool must agree."""
