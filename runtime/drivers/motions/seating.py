@@ -15,6 +15,7 @@ from runtime.drivers.steps import GiveUp, Look, Press
 from runtime.kinematics import Joints, Matrix, matrix_to_pose
 from runtime.parts import Seat
 
+_ABOVE_RIM_M: Final = 0.008
 _WIDEST_SPIRAL_M: Final = 0.002
 _CLOSEST_SPIRAL_M: Final = 0.0005
 _FORGIVES: Final = 0.7  # of the radius of an opening's mouth: windings overlap in it
@@ -28,11 +29,13 @@ class Seating:
         held: The part in the hand.
         seat: Where it fits, as drawn.
         centre: Where its centre will be, m, base frame.
+        sunk_m: How far its lower face will be below the top of what it goes into.
     """
 
     held: Held
     seat: Seat
     centre: Place
+    sunk_m: float = 0.0
 
 
 def insert(planner: Planner, hand: str, obj: str, into: str) -> None:
@@ -73,7 +76,8 @@ def find_seat(planner: Planner, hand: str, obj: str, into: str) -> Seating:
     if seat is None:
         raise MotionError(f"{obj} ({held.part.type}) fits nowhere in {into} ({receiver.type})")
     planner.hangs_m = held.hangs_m
-    return Seating(held, seat, add(places.position(into), seat.offset))
+    sunk = (receiver.size[2] + held.part.size[2]) / 2 - seat.offset[2]
+    return Seating(held, seat, add(places.position(into), seat.offset), max(0.0, sunk))
 
 
 def look_first(planner: Planner) -> None:
@@ -91,7 +95,7 @@ def over_seat(
     above_m: float = 0.0,
     prefer: Callable[[Joints], Joints] = lambda joints: joints,
 ) -> tuple[Matrix, Joints]:
-    """Go over the seat and down to where the way by force begins.
+    """Go over the seat and down to where the way by force begins: above all it could strike.
 
     Args:
         planner: Gets the steps.
@@ -106,10 +110,11 @@ def over_seat(
     x, y, z = seating.centre
     centre = (x, y, z + above_m)
     now = planner.turned_rad
+    above_rim_m = seating.sunk_m - above_m + _ABOVE_RIM_M
     return planner.reach(
         lambda turn: add(centre, seating.held.turned(turn - now)),
         what,
-        above_m=planner.config.force.guard_m,
+        above_m=max(planner.config.force.guard_m, above_rim_m),
         prefer=prefer,
         turnable=is_round(seating.held.part),
     )
