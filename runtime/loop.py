@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from enum import Enum, auto
 from itertools import pairwise
 from typing import Protocol
 
@@ -20,7 +19,9 @@ from runtime.drivers import PARK, ArmState, Driver, Recoverable
 from runtime.errors import ControllerError, DriverError
 from runtime.interruption import Interruption
 from runtime.people import People
-from runtime.percepts import HAND, PERSON_TYPE, hand_detection, percepts_of
+from runtime.percepts import PERSON_TYPE, hand_detection, percepts_of
+from runtime.run_record import LoopResult, RunRecord
+from runtime.second_look import LoopLimits, SecondLook
 
 
 class PerceptSource(Protocol):
@@ -31,30 +32,6 @@ class PerceptSource(Protocol):
 
     def look(self) -> tuple[Sequence[Detection], Camera]:
         """Give the next frame's detections and the camera that took it."""
-
-
-@dataclass(frozen=True, slots=True)
-class LoopLimits:
-    """When the loop gives up.
-
-    Args:
-        patience: Cycles in a row without a plan, arm at rest, before the task has failed.
-        patience_s: The least time of that, on the arm's clock, s: whoever carries a part off may
-            bring it back.
-        confirm: Cycles in a row, arm back at the look pose, in which the goals must be believed:
-            enough for what is seen to speak against it.
-        confirm_s: The least time of that, on the arm's clock, s.
-        company_s: How much longer that look may last while the hand of a person is in sight: who
-            knows what it is about to do. On the arm's clock, s.
-        cycles: The most cycles of one run.
-    """
-
-    patience: int = 15
-    patience_s: float = 8.0
-    confirm: int = 16
-    confirm_s: float = 1.0
-    company_s: float = 30.0
-    cycles: int = 3000
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,37 +53,6 @@ class TakenUp:
 
     anchors: tuple[Anchor, ...]
     interrupted: Outcome | None
-
-
-class _Resting(Enum):
-    """Whether the arm is where it sees everything."""
-
-    NO = auto()
-    ON_THE_WAY = auto()
-    AT_LOOK_POSE = auto()
-
-
-@dataclass(frozen=True, slots=True)
-class ActionRecord:
-    """An action that was started, and how it ended."""
-
-    cycle: int
-    action: str
-    status: str
-
-
-@dataclass(frozen=True, slots=True)
-class LoopResult:
-    """How a run ended: achieved or not, why, after how many cycles, by which actions.
-
-    `recoveries` are the reasons for which the arm had stopped and was set going again.
-    """
-
-    achieved: bool
-    reason: str
-    cycles: int
-    actions: tuple[ActionRecord, ...]
-    recoveries: tuple[str, ...] = ()
 
 
 class Loop:
@@ -150,22 +96,18 @@ class Loop:
         self._limits = limits or LoopLimits()
         self._people = people or People()
         self._anchors = () if taken_up is None else taken_up.anchors
-        self._actions: list[ActionRecord] = []
-        self._lost: dict[str, str] = {}
+        self._record = RunRecord()
         self._aborted = None if taken_up is None else taken_up.interrupted
         self._extra: dict[str, object] = {} if taken_up is None else {RESUMED: True}
         self._outcomes: tuple[Outcome, ...] = ()
         self._last: CycleReport | None = None
-        self._resting = _Resting.AT_LOOK_POSE if taken_up is None else _Resting.NO
-        self._waited = 0
+        self._second_look = SecondLook(driver, self._limits, begun=taken_up is None)
         self._started_s = 0.0
-        self._waiting_since_s = 0.0
         self._company = False
         self._interruption = Interruption()
         self._asked_since = -1
         self._cycles = 0
         self._ended: LoopResult | None = None
-        self._recoveries: list[str] = []
 
     def run(self) -> LoopResult:
         """Run to the end. An interruption from the keyboard stops the arm and ends the run."""
@@ -201,13 +143,7 @@ class Loop:
 
     def _end(self, end: _End) -> LoopResult:
         self._driver.stop()
-        self._ended = LoopResult(
-            end.achieved,
-            end.reason,
-            self._cycles,
-            tuple(self._actions),
-            tuple(self._recoveries),
-        )
+        self._ended = self._record.result(end.reason, self._cycles, achieved=end.achieved)
         return self._ended
 
     def _recover(self, reason: str) -> _End | None:
@@ -222,8 +158,8 @@ class Loop:
         except (ControllerError, DriverError) as error:
             self._record_loss(reason)
             return _End(f"{reason}; the arm could not be set going again: {error}")
-        self._recoveries.append(reason)
-        self._resting, self._waited = _Resting.NO, 0
+        self._record.recovered(reason)
+        self._second_look.lost()
         return None
 
     def _broken_off(self, reason: str) -> Outcome | None:
@@ -290,17 +226,16 @@ class Loop:
         decision, step = report.decision, report.decision.step
         if decision.kind in (DecisionKind.ACHIEVED, DecisionKind.IMPASSE):
             return self._rest(decision, report.outcomes, report.arm.timestamp_s)
-        self._waited = 0
+        self._second_look.interrupt()
         if step is None:
             return None
         if decision.request is not None:
             return self._stand_aside(decision.request, step, report)
         if decision.kind is DecisionKind.ACT:
-            if self._resting is _Resting.ON_THE_WAY:
-                self._driver.stop()
+            self._second_look.break_off()
             self._driver.start(step.action, step.commands, self._by_name())
-            self._actions.append(ActionRecord(decision.cycle, str(step.action), Status.RUNNING))
-            self._resting, self._started_s = _Resting.NO, report.arm.timestamp_s
+            self._record.started(decision.cycle, step.action)
+            self._started_s = report.arm.timestamp_s
         elif decision.kind is DecisionKind.ABORT:
             self._abort(step.action, decision.reason)
         else:
@@ -312,10 +247,12 @@ class Loop:
     def _stand_aside(self, request: Request, step: PlanStep, report: CycleReport) -> _End | None:
         """Get the arm out of the way, ask, and keep still while another agent does its part."""
         if request.since == report.decision.cycle:
-            self._actions.append(ActionRecord(request.since, str(step.action), "requested"))
-        end = self._retreat(report.outcomes)
-        if end is not None or self._resting is not _Resting.AT_LOOK_POSE:
-            return end
+            self._record.started(request.since, step.action, "requested")
+        no_way = self._second_look.retreat(report.outcomes, self._by_name())
+        if no_way is not None:
+            return _End(no_way)
+        if not self._second_look.there:
+            return None
         now_s = report.arm.timestamp_s
         if self._asked_since != request.since:
             self._asked_since, self._started_s = request.since, now_s
@@ -337,53 +274,23 @@ class Loop:
         A goal counts as achieved only after it has been believed there for a while, and an
         impasse only ends the run when looking again did not help.
         """
-        end = self._retreat(outcomes)
-        if end is not None:
-            return end
-        if self._resting is not _Resting.AT_LOOK_POSE:
+        look = self._second_look
+        no_way = look.retreat(outcomes, self._by_name())
+        if no_way is not None:
+            return _End(no_way)
+        if not look.there:
             return None
-        if self._waited == 0:
-            self._waiting_since_s = now_s
-        self._waited += 1
-        waited_s, limits = now_s - self._waiting_since_s, self._limits
+        look.count(now_s)
         if decision.kind is DecisionKind.ACHIEVED:
-            done = self._waited >= limits.confirm and waited_s >= limits.confirm_s
-            if done and self._company and waited_s < limits.confirm_s + limits.company_s:
-                return None
+            done = look.confirmed(now_s, company=self._company)
             return _End(decision.reason, achieved=True) if done else None
-        if self._waited < limits.patience or waited_s < limits.patience_s:
+        if not look.in_vain(now_s):
             return None
         wanted = [str(term) for goal in self._agent.goals for term in goal.atom.args]
-        lost = [sentence for name, sentence in self._lost.items() if name in wanted]
-        return _End("; ".join([decision.reason, *lost]))
-
-    def _retreat(self, outcomes: Sequence[Outcome]) -> _End | None:
-        """Go back to the look pose, or go on going there; say so if that cannot be."""
-        for outcome in outcomes:
-            if outcome.action == PARK and outcome.status is Status.FAILED:
-                self._driver.state()  # an arm that is lost says so by itself
-                return _End(f"the arm cannot go back to its look pose: {outcome.reason}")
-            if outcome.action == PARK and outcome.status is Status.SUCCEEDED:
-                self._resting = _Resting.AT_LOOK_POSE
-        if self._resting is _Resting.NO:
-            self._driver.start(PARK, (Action("rest", (HAND,)),), self._by_name())
-            self._resting, self._waited = _Resting.ON_THE_WAY, 0
-        return None
+        return _End("; ".join([decision.reason, *self._record.gone(wanted)]))
 
     def _note(self, cycle: int, outcomes: Sequence[Outcome], before: Sequence[Anchor]) -> None:
-        for outcome in outcomes:
-            if self._actions and self._actions[-1].action == str(outcome.action):
-                self._actions[-1] = replace(self._actions[-1], status=str(outcome.status))
-        names = {anchor.name for anchor in self._anchors}
-        for anchor in before:
-            if anchor.name not in names:
-                unseen = self._anchoring.frame - anchor.last_seen
-                self._lost[anchor.name] = (
-                    f"{anchor.name} is no longer anchored since cycle {cycle}, after {unseen} "
-                    "cycles in which it was not seen and nothing said where it went"
-                )
-        for name in names:
-            self._lost.pop(name, None)
+        self._record.cycle(cycle, outcomes, before, self._anchors, self._anchoring.frame)
 
     def _attachments(self) -> list[Attachment]:
         pairs = self._agent.state.hierarchy.pairs()

@@ -21,10 +21,12 @@ from runtime.cell_source import CellColleague, known_actions
 from runtime.config import RobotConfig, load_robot
 from runtime.cycle_report import CycleReport
 from runtime.errors import UsageError
-from runtime.loop import ActionRecord, Loop, LoopLimits, TakenUp
+from runtime.loop import Loop, TakenUp
 from runtime.parts import load_parts
 from runtime.people import Operator, People
 from runtime.resuming import CutOff, read_cut_off, read_world, world_keeper, world_path
+from runtime.run_record import ActionRecord
+from runtime.second_look import LoopLimits
 from runtime.workplace import Setting, Workplace, open_workplace
 
 DEFAULT_ROBOT = "ur5"

@@ -11,7 +11,7 @@ from icarus_lite.trace import Frame, cycle_record, read_frames
 
 if TYPE_CHECKING:
     from runtime.cycle_report import CycleReport
-    from runtime.loop import LoopResult
+    from runtime.run_record import LoopResult
 
 
 class LiveRun(Protocol):

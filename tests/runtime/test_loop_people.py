@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
-from test_loop import CONFIG, PICK, Body, Eyes
-from test_loop_requests import DOMAIN, PUSH
-from test_loop_requests import Body as StandingBody
-from test_loop_requests import Eyes as CaseEyes
+from scripted_assembly import CONFIG, PICK, Body, Eyes
+from scripted_push import DOMAIN, PUSH
+from scripted_push import Body as StandingBody
+from scripted_push import Eyes as CaseEyes
 
 from aapa import Anchor, Anchoring
 from icarus_lite import Action, Agent, Outcome, Status, load_domain

@@ -6,16 +6,17 @@ import json
 from pathlib import Path
 
 import pytest
-from test_loop import CONFIG, Body, Eyes
+from scripted_assembly import CONFIG, Body, Eyes
 
 from aapa import Anchoring, AnchorStatus
 from icarus_lite import Agent, load_domain
 from icarus_lite.errors import TraceError
 from icarus_lite.trace import Recording, TraceWriter, header, replay
 from runtime.errors import UsageError
-from runtime.loop import Loop, LoopLimits, TakenUp
+from runtime.loop import Loop, TakenUp
 from runtime.resuming import CUT_OFF, read_cut_off, read_world, task_of, world_path
 from runtime.run import anchoring_parameters
+from runtime.second_look import LoopLimits
 
 GOAL = "(attached hubcover case)"
 
