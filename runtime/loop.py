@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Protocol
+from typing import Final, Protocol
 
 from aapa import Anchor, Anchoring, Attachment, Camera, Detection
 from icarus_lite import Action, Agent, Decision, DecisionKind, Outcome, Request, Status
@@ -22,6 +22,9 @@ from runtime.people import People
 from runtime.percepts import PERSON_TYPE, hand_detection, percepts_of
 from runtime.run_record import LoopResult, RunRecord
 from runtime.second_look import LoopLimits, SecondLook
+
+_ARM_NOTICES_WITHIN_S: Final = 3.0  # longer than a driver believes a silent controller
+_LOOK_EVERY_S: Final = 0.02
 
 
 class PerceptSource(Protocol):
@@ -135,8 +138,10 @@ class Loop:
             self._interruption.check()
             self._outcomes = self._poll()
             end = self._act(self._cycle(self._outcomes))
-        except (ControllerError, DriverError) as error:
+        except DriverError as error:
             end = self._recover(str(error))
+        except ControllerError as error:
+            end = self._recover(self._what_the_arm_says(str(error)))
         except KeyboardInterrupt:
             end = _End("interrupted by the operator; the arm was stopped")
         return None if end is None else self._end(end)
@@ -145,6 +150,18 @@ class Loop:
         self._driver.stop()
         self._ended = self._record.result(end.reason, self._cycles, achieved=end.achieved)
         return self._ended
+
+    def _what_the_arm_says(self, otherwise: str) -> str:
+        """Give the arm's own reason if it is lost too: what is wired to it may notice it first."""
+        self._driver.stop()
+        deadline = time.monotonic() + _ARM_NOTICES_WITHIN_S
+        while time.monotonic() < deadline:
+            try:
+                self._driver.state()
+            except DriverError as error:
+                return str(error)
+            time.sleep(_LOOK_EVERY_S)
+        return otherwise
 
     def _recover(self, reason: str) -> _End | None:
         """Set the arm going again if the operator says so; otherwise the run has ended."""

@@ -80,6 +80,7 @@ _LINK: Final = (
     r"has sent no new state for",
     r"the connection to the controller has hung",
     r"no longer answers",
+    r"nothing passed between this program and the controller",
 )
 """Reasons that are true of a link that is gone."""
 

@@ -64,6 +64,9 @@ def find_plan(
     kept = prepared or PlanningDomain(domain, imagination.evaluator)
     grounding = ground_goals(kept, imagination, goals, excluded=excluded)
     if grounding.hopeless:
+        if excluded and not ground_goals(kept, imagination, goals).hopeless:
+            wanted = " ".join(map(str, grounding.hopeless))
+            return NoPlan(f"no other way leads to {wanted}", final=True)
         return NoPlan(_hopeless(domain, imagination, grounding, facts), final=True)
     limits = Limits(limit, seconds)
     shortening = Limits(improvement, seconds if improvement_s is None else improvement_s)

@@ -22,7 +22,7 @@ from runtime.drivers.force import Push
 from runtime.drivers.limits import tcp_matrix
 from runtime.drivers.steps import MoveJoints, MoveLinear
 from runtime.drivers.ur_dashboard import check_controller
-from runtime.drivers.ur_link import Silence
+from runtime.drivers.ur_link import Lull, Silence
 from runtime.drivers.ur_safety import ONLY_ON_YOUR_WORD, stop_in_words
 from runtime.errors import ControllerError
 from runtime.kinematics import Joints, Pose, pose_to_matrix
@@ -32,6 +32,7 @@ _PLAYING: Final = 2  # runtime_state
 _STILL_RAD_S: Final = 0.005
 _KICK_EVERY_S: Final = 0.02
 _LONGEST_BLINK_S: Final = 0.02  # looks are 4 ms apart, unless this process was kept waiting
+_WATCHDOG_SHARE: Final = 0.8  # the last sign may have been under way when the lull began
 _MODEL_WITHIN_M: Final = 0.02  # factory calibration moves a real arm by a few millimetres
 _TCP_WITHIN_S: Final = 2.0
 _PROGRAM_WITHIN_S: Final = 2.0
@@ -77,6 +78,7 @@ class UrConnection:
         self._control.setWatchdog(config.watch.watchdog_hz)
         self._kicked_at = time.monotonic()
         self._silence = Silence(_LONGEST_BLINK_S)
+        self._lull = Lull(_WATCHDOG_SHARE / config.watch.watchdog_hz)
         self._await_tool()
 
     def state(self) -> ArmState:
@@ -111,7 +113,9 @@ class UrConnection:
 
     def trouble(self) -> str:
         """Say why the arm cannot be driven (any more); empty while it can."""
-        silent_s = self._silence.since(self.timestamp_s(), time.monotonic())
+        news, now = self.timestamp_s(), time.monotonic()
+        silent_s = self._silence.since(news, now)
+        self._lull.note(news, now)
         where = f"the controller at {self._address}"
         if not (self._receive.isConnected() and self._control.isConnected()):
             return (
@@ -126,6 +130,12 @@ class UrConnection:
                 f"see that it is on and reachable{ONLY_ON_YOUR_WORD}"
             )
         if self._receive.getRuntimeState() != _PLAYING:
+            if lull_s := self._lull.lately(now):
+                return (
+                    f"nothing passed between this program and {where} for {lull_s:.2f} s, and the "
+                    "controller's watchdog ended the control program; see that the controller is "
+                    f"on and reachable, and that this machine is not overloaded{ONLY_ON_YOUR_WORD}"
+                )
             return (
                 f"the control program on {where} was stopped; see that nobody else uses the arm"
                 f"{ONLY_ON_YOUR_WORD}"

@@ -110,6 +110,39 @@ class Silence:
         return self._silent_s
 
 
+class Lull:
+    """Remembers the last long time in which no news came in, for whatever reason.
+
+    Unlike `Silence` it counts as the controller's watchdog does: that this process did not run is
+    no excuse.
+
+    Args:
+        least_s: The shortest time worth remembering, s.
+    """
+
+    def __init__(self, least_s: float) -> None:
+        self._least_s = least_s
+        self._news: float | None = None
+        self._since_s = 0.0
+        self._lull: tuple[float, float] | None = None
+
+    def note(self, news: float, now_s: float) -> None:
+        """Take note of the other side's time stamp, seen now."""
+        if news == self._news:
+            return
+        lasted = now_s - self._since_s
+        if self._news is not None and lasted >= self._least_s:
+            self._lull = (lasted, now_s)
+        self._news, self._since_s = news, now_s
+
+    def lately(self, now_s: float) -> float:
+        """Give how long the last one was if it ended within as long again; 0 s otherwise."""
+        if self._lull is None:
+            return 0.0
+        lasted, ended_s = self._lull
+        return lasted if now_s - ended_s <= lasted else 0.0
+
+
 class StateBoard:
     """One state in shared memory, written by one process and read by another without a lock.
 

@@ -11,7 +11,8 @@ from aapa import Anchoring
 from icarus_lite import Agent, load_domain
 from icarus_lite.trace import TraceWriter, header, inputs_of, read_trace
 from runtime.cycle_report import CycleReport
-from runtime.drivers import PARK
+from runtime.drivers import PARK, ArmState
+from runtime.errors import ControllerError
 from runtime.loop import Loop
 from runtime.run import anchoring_parameters
 from runtime.second_look import LoopLimits
@@ -151,3 +152,35 @@ def test_two_runs_leave_the_same_trace_but_for_the_times(
         cycles = read_trace(path).cycles
         texts.append([{k: v for k, v in c.items() if k != "timings"} for c in cycles])
     assert texts[0] == texts[1]
+
+
+class Wired(Eyes):
+    """Eyes whose wires break while the arm picks something up."""
+
+    def __init__(self, body: Body, *, with_the_arm: bool) -> None:
+        super().__init__(body)
+        self.with_the_arm = with_the_arm
+
+    def update(self, arm: ArmState) -> None:
+        super().update(arm)
+        if self.body.started:
+            if self.with_the_arm:
+                self.body.dies_at = arm.timestamp_s
+            raise ControllerError("the bench does not answer")
+
+
+@pytest.mark.parametrize(
+    ("with_the_arm", "reason"),
+    [
+        (True, "the controller no longer answers; the arm was stopped"),
+        (False, "the bench does not answer"),
+    ],
+)
+def test_a_broken_wire_ends_the_run_in_the_words_of_the_arm_if_it_is_lost_too(
+    gearbox: Path, monkeypatch: pytest.MonkeyPatch, *, with_the_arm: bool, reason: str
+) -> None:
+    monkeypatch.setattr("runtime.loop._ARM_NOTICES_WITHIN_S", 0.1)
+    body = Body(polls=5)
+    result = loop(body, gearbox, Wired(body, with_the_arm=with_the_arm)).run()
+    assert (result.achieved, result.reason) == (False, reason)
+    assert body.stops >= 1

@@ -199,6 +199,23 @@ def test_other_faults_are_told_apart(slow_controller, config, parts, scene, faul
         await_that(lambda: stands_still(slow_controller))
 
 
+def test_a_silence_that_the_watchdog_ends_is_told_from_somebody_elses_stop(
+    slow_controller, config, parts, scene
+):
+    with connect(slow_controller, config, parts) as driver:
+        driver.start(PICK, GRASP, scene())
+        await_motion(driver, scene())
+        stall = {"fault": "stall", "when": {"time_s": 0}, "wall_s": 1.4}
+        slow_controller.bench({"faults": [stall]})
+        outcome = run(driver, scene, within_s=10.0)
+        assert outcome.status is Status.FAILED
+        # On a machine that is very busy the silence itself is noticed first.
+        assert re.search(
+            r"watchdog ended the control program|has sent no new state", outcome.reason
+        ), outcome.reason
+        await_that(lambda: stands_still(slow_controller))
+
+
 def test_a_controller_killed_mid_move_is_noticed_and_let_go(slow_controller, config, parts, scene):
     driver = connect(slow_controller, config, parts)
     driver.start(PICK, GRASP, scene())

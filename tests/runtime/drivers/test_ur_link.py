@@ -6,7 +6,7 @@ from multiprocessing import get_context
 import pytest
 
 from runtime.drivers import ArmState
-from runtime.drivers.ur_link import Silence, StateBoard
+from runtime.drivers.ur_link import Lull, Silence, StateBoard
 
 
 def state(number):
@@ -70,3 +70,17 @@ def test_own_absence_is_not_taken_for_silence():
     silence = Silence(blink_s=0.02)
     silence.since(1.0, 100.0)
     assert silence.since(1.0, 160.0) == 0.02
+
+
+def test_a_lull_counts_own_absence_as_well_and_is_remembered_as_long_as_it_lasted():
+    lull = Lull(least_s=0.8)
+    lull.note(1.0, 100.0)
+    assert lull.lately(100.0) == 0.0
+    lull.note(1.1, 100.5)
+    assert lull.lately(100.5) == 0.0
+    lull.note(1.1, 101.0)
+    lull.note(1.2, 101.7)
+    assert lull.lately(101.7) == pytest.approx(1.2)
+    lull.note(1.3, 101.8)
+    assert lull.lately(102.8) == pytest.approx(1.2)
+    assert lull.lately(103.0) == 0.0
