@@ -185,7 +185,7 @@ FIELDS: Mapping[str, Keyword] = _table(
     Keyword(":robot", Content.TERMS, "The robot that the task is for."),
     Keyword(":agents", Content.AGENTS, "The other agents that take part in the task."),
     Keyword(":goal", Content.CONDITIONS, "What must hold in the end, or with `not` must not."),
-    Keyword(":init", Content.CONDITIONS, "What is believed when the task begins."),
+    Keyword(":init", Content.CONDITIONS, "What is believed when the task, or the test, begins."),
     Keyword(":relevance", Content.CONDITIONS, "What must hold for the goal to matter."),
     Keyword(":priority", Content.TERMS, "How urgent the goal is; greater comes first."),
     Keyword(

@@ -341,6 +341,7 @@ class DomainTest:
         then: The cycles that follow, in order.
         goals: A goal for which, after the last cycle, there must be a plan; empty for none.
         plan: The steps of that plan; None where only its existence matters.
+        init: What is believed before the first cycle, no percepts among it.
     """
 
     name: str
@@ -351,6 +352,7 @@ class DomainTest:
     then: tuple[LaterCycle, ...] = ()
     goals: tuple[Condition, ...] = ()
     plan: tuple[Atom, ...] | None = None
+    init: tuple[Atom, ...] = ()
     span: Span = field(default=NOWHERE, compare=False)
 
 

@@ -6,10 +6,16 @@ from heapq import heappop, heappush
 
 from icarus_lite.language.teams import cost_of
 from icarus_lite.planning.ground_task import GroundTask, State
+from icarus_lite.planning.lower_bound import at_least
 from icarus_lite.planning.situation import PlanStep
 
 MOST_CHECKS = 200_000
 """How often it is asked whether an operator can start before the look around is given up."""
+
+
+def least_cost(task: GroundTask) -> int:
+    """Give a cost that no plan can go below."""
+    return at_least(task, [cost_of(operator.step.clause) for operator in task.operators])
 
 
 def cheaper_plan(
@@ -19,7 +25,7 @@ def cheaper_plan(
 
     Args:
         task: The problem.
-        cost: What the given plan costs.
+        cost: What the given plan costs; `least_cost` is less, or there is nothing to look for.
         checks: How often to ask whether an operator can start, at most.
 
     Returns:

@@ -14,7 +14,7 @@ from typing import TypedDict, Unpack
 from icarus_lite.language.syntax import Condition, Domain
 from icarus_lite.language.teams import cost_of
 from icarus_lite.planning import planner
-from icarus_lite.planning.cheapest import cheaper_plan
+from icarus_lite.planning.cheapest import cheaper_plan, least_cost
 from icarus_lite.planning.grounding import PlanningDomain, ground_goals
 from icarus_lite.planning.plan import NoPlan, Plan
 from icarus_lite.planning.postponing import postponed
@@ -67,13 +67,15 @@ def find_plan(
             domain, imagination, goals, excluded=barred, prepared=kept, **options
         )
 
-    found = _alone(domain, imagination, goals, excluded, options)
+    found = _alone(kept, imagination, goals, excluded, options)
+    task = ground_goals(kept, imagination, goals, excluded=excluded).task
+    if found is not None and least_cost(task) >= cost_of_plan(found):
+        return postponed(imagination, found)
     helped = ask(excluded) if found is None or _may_be_cheaper(domain, found) else found
     if isinstance(helped, NoPlan):
         return helped if found is None else found
     found = helped if found is None else min(found, helped, key=cost_of_plan)
-    grounding = ground_goals(kept, imagination, goals, excluded=excluded)
-    cheaper, is_cheapest = cheaper_plan(grounding.task, cost_of_plan(found))
+    cheaper, is_cheapest = cheaper_plan(task, cost_of_plan(found))
     if cheaper is not None:
         found = replace(found, steps=cheaper)
     barred = [*excluded]
@@ -98,18 +100,19 @@ def cost_of_steps(steps: Iterable[PlanStep]) -> int:
 
 
 def _alone(
-    domain: Domain,
+    domain: PlanningDomain,
     imagination: Imagination,
     goals: Sequence[Condition],
     excluded: Collection[Action],
     options: SearchOptions,
 ) -> Plan | None:
     """Plan with one's own skills only; None where there is no such plan, or no other agent."""
-    own = tuple(clause for clause in domain.skills if clause.agent is None)
-    if own == domain.skills:
+    mine = domain.alone()
+    if mine is domain:
         return None
-    mine = replace(domain, skills=own)
-    found = planner.find_plan(mine, imagination, goals, excluded=excluded, **options)
+    found = planner.find_plan(
+        mine.domain, imagination, goals, excluded=excluded, prepared=mine, **options
+    )
     return found if isinstance(found, Plan) else None
 
 

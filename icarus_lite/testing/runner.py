@@ -5,7 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 
 from icarus_lite.errors import FrameError, InferenceError
-from icarus_lite.inference import FactStore, Functions, InferenceEngine, Memory, explain, match
+from icarus_lite.inference import (
+    FactStore,
+    Functions,
+    InferenceEngine,
+    Memory,
+    explain,
+    given_memory,
+    match,
+)
 from icarus_lite.language.syntax import Atom, Constant, Domain, DomainTest, LaterCycle
 from icarus_lite.symbols import Action, Belief, Outcome, Percept, Value
 from icarus_lite.testing.absence import why_absent
@@ -29,11 +37,13 @@ def run_tests(domain: Domain, functions: Functions | None = None) -> tuple[CaseO
 def run_test(engine: InferenceEngine, test: DomainTest) -> CaseOutcome:
     """Run one test of the engine's domain.
 
-    The first cycle begins with an empty memory. Each cycle perceives what it states and is told
-    that its actions have succeeded; then its expectations are compared with the beliefs. A goal
-    is planned for after the last cycle. Domain errors make the test fail; nothing is raised.
+    The first cycle begins with what `:init` gives, and an otherwise empty memory. Each cycle
+    perceives what it states and is told that its actions have succeeded; then its expectations are
+    compared with the beliefs. A goal is planned for after the last cycle. Domain errors make the
+    test fail; nothing is raised.
     """
-    memory, differences, notes = Memory(), list[Difference](), list[str]()
+    memory = given_memory(engine.domain, test.init)
+    differences, notes = list[Difference](), list[str](memory.state.notes)
     percepts: tuple[Atom, ...] = ()
     cycles: tuple[DomainTest | LaterCycle, ...] = (test, *test.then)
     for number, cycle in enumerate(cycles):

@@ -227,24 +227,39 @@ class _Check:
             self._patterns.conditions(task.goals)
             for fact in task.init:
                 self._given(fact)
+                self._asked_for(fact)
 
     def _given(self, fact: Atom) -> None:
-        """Check a fact of `:init`: ground, given by nothing else, and of use to somebody."""
+        """Check a fact of `:init`: ground, and derived by nothing."""
         self._patterns.pattern(fact)
         self._ground(fact, "a fact of :init")
-        place, name = self._report.name_of(fact), fact.predicate
+        name = fact.predicate
         if self._patterns.defined(name, Origin.PERCEPT):
             self._object_name(fact)
         elif self._patterns.defined(name, Origin.CONCEPT):
             message = f"`{name}` is a concept: it is derived, and cannot be given"
             hint = "give the facts that its clauses speak of"
-            self._report.error(place, "ICR070", message, hint)
-        elif name != ATTACHED and name not in self._asked:
+            self._report.error(self._report.name_of(fact), "ICR070", message, hint)
+
+    def _asked_for(self, fact: Atom) -> None:
+        """Check that what a task gives is of use to somebody."""
+        name = fact.predicate
+        derived = self._patterns.defined(name, Origin.PERCEPT) or self._patterns.defined(
+            name, Origin.CONCEPT
+        )
+        if name != ATTACHED and name not in self._asked and not derived:
             meant = self._report.closest(name, self._asked)
             hint = f"did you mean `{meant}`?" if meant else "remove it, or use it in a condition"
-            self._report.warning(place, "ICR070", f"nothing asks for `{name}`", hint)
+            message = f"nothing asks for `{name}`"
+            self._report.warning(self._report.name_of(fact), "ICR070", message, hint)
 
     def _test(self, test: DomainTest) -> None:
+        for fact in test.init:
+            self._given(fact)
+            if self._patterns.defined(fact.predicate, Origin.PERCEPT):
+                message = f"`{fact.predicate}` is a percept: a test perceives it cycle by cycle"
+                hint = "give it in :percepts"
+                self._report.error(self._report.name_of(fact), "ICR070", message, hint)
         self._cycle_of_test(test, test.percepts)
         for later in test.then:
             self._cycle_of_test(later, later.percepts or ())

@@ -227,6 +227,7 @@ def _written(domain: Domain) -> Iterator[Atom]:
         conditions += task.goals
         yield from task.init
     for test in domain.tests:
+        yield from test.init
         yield from _tested(test)
         for later in test.then:
             yield from _tested(later)

@@ -302,6 +302,7 @@ class _Draft:
             )
         return DomainTest(
             name=form.words[0].text,
+            init=_values(fields, ":init", Atom),
             percepts=_values(fields, ":percepts", Atom),
             actions=_values(fields, ":action", Atom),
             expect=_values(fields, ":expect", Atom),

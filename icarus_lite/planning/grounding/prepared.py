@@ -8,7 +8,7 @@ in one domain keeps.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from icarus_lite.inference import ATTACHED, Closure, Evaluator
 from icarus_lite.language.checking.stratification import recursive_concepts, strata
@@ -63,12 +63,22 @@ class PlanningDomain:
         evaluator: Evaluates its tests.
     """
 
-    __slots__ = ("_evaluator", "_prepared", "domain")
+    __slots__ = ("_alone", "_evaluator", "_prepared", "domain")
 
     def __init__(self, domain: Domain, evaluator: Evaluator | None = None) -> None:
         self.domain = domain
         self._evaluator = evaluator or Evaluator()
         self._prepared: dict[tuple[Condition, ...], Prepared] = {}
+        self._alone: PlanningDomain | None = None
+
+    def alone(self) -> PlanningDomain:
+        """Give the same domain without what other agents do; itself if there are none."""
+        if self._alone is None:
+            own = tuple(clause for clause in self.domain.skills if clause.agent is None)
+            if own == self.domain.skills:
+                return self
+            self._alone = PlanningDomain(replace(self.domain, skills=own), self._evaluator)
+        return self._alone
 
     def prepare(self, goals: Sequence[Condition], watched: Sequence[str] = ()) -> Prepared:
         """Give the clauses that count for these goals, compiled.

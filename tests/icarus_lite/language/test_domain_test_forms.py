@@ -60,3 +60,24 @@ def test_later_cycles_and_plans_are_checked_like_the_rest() -> None:
     assert problems_of(":goal ((at h a)) :plan ((go ?h a))")[0][0] == "ICR025"
     assert problems_of(":goal ((at h a)) :plan ((gone h a))")[0][0] == "ICR023"
     assert problems_of(":then ((:goal ((at h a))))")[0][0] in ("ICR008", "ICR009")
+
+
+def test_a_test_may_begin_with_facts() -> None:
+    assert list(map(str, form(":init ((at h a) (attached h a))").init)) == [
+        "(at h a)",
+        "(attached h a)",
+    ]
+    assert form(":percepts ((hand h))").init == ()
+
+
+def test_percepts_are_not_given_but_perceived() -> None:
+    assert problems_of(":init ((hand h))") == [
+        ("ICR070", "`hand` is a percept: a test perceives it cycle by cycle")
+    ]
+
+
+def test_facts_of_a_test_are_known_and_ground() -> None:
+    assert problems_of(":init ((ta h a))") == [("ICR013", "nothing is ever known about `ta`")]
+    assert problems_of(":init ((at h ?there))") == [
+        ("ICR025", "a fact of :init cannot hold the variable ?there")
+    ]

@@ -5,6 +5,7 @@ import random
 from icarus_lite.planning import Plan, find_plan
 from icarus_lite.planning.grounding import ground_task
 from icarus_lite.planning.lower_bound import at_least
+from icarus_lite.planning.search import search
 from icarus_lite.planning.shortest import shorter_plan
 from tests.icarus_lite.planning.grounding.test_task import HANDS, task
 from tests.reference.ground_walks import breadth_first, imagined, random_goals
@@ -17,6 +18,12 @@ def test_each_part_takes_its_own_two_steps() -> None:
 
 def test_a_goal_that_holds_needs_no_step() -> None:
     assert at_least(task(HANDS, "(free h)")) == 0
+
+
+def test_a_landmark_costs_what_the_cheapest_of_its_steps_does() -> None:
+    ground = task(HANDS, "((on o0 o1) (on o1 o2))")
+    names = [operator.step.action.name for operator in ground.operators]
+    assert at_least(ground, [3 if name == "pick-up" else 10 for name in names]) == 2 * (3 + 10)
 
 
 def test_no_plan_is_shorter_than_the_bound() -> None:
@@ -33,6 +40,10 @@ def test_no_plan_is_shorter_than_the_bound() -> None:
         compared += 1
         ground = ground_task(domain, imagination, goals)
         assert at_least(ground) <= length, f"seed {seed}"
+        prices = [rng.randint(1, 9) for _ in ground.operators]
+        plan = search(ground).plan
+        assert plan is not None
+        assert at_least(ground, prices) <= sum(prices[number] for number in plan), f"seed {seed}"
         found = find_plan(domain, imagination, goals)
         assert isinstance(found, Plan)
         assert len(found.steps) == length, f"seed {seed}"

@@ -38,6 +38,9 @@ def run(body: str, percepts: str = SCENE) -> CaseOutcome:
 @pytest.mark.parametrize(
     "body",
     [
+        ":init ((holding h1 a) (attached b a)) :expect ((holding h1 a)) :expect-not ((free h1))",
+        ":init ((holding h1 a) (attached b a)) :action (drop h1 a) :expect ((attached b a))",
+        ":init ((holding h1 a)) :goal ((holding h1 b)) :plan ((drop h1 a) (grab h1 b))",
         ":expect ((free h1)) :expect-not ((near a b))",
         ":expect ((object ?o ^type plug) (free ?_))",
         ":expect ((gap a b ^size 0.25)) :expect-not ((gap a b ^size 0.3) (gap b a))",
