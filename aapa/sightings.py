@@ -66,13 +66,14 @@ class Sightings:
             confidence = min(1.0, round(confidence + parameters.confidence_gain, 9))
         box, position = detection.box, detection.position
         gain = parameters.position_gain
-        if detection.score < parameters.sure_score and anchor.confidence >= 1.0:
+        half_hidden = detection.score < parameters.sure_score and anchor.confidence >= 1.0
+        if half_hidden:
             gain = 0.0
-        if gain < 1 and not self._has_been_moved(anchor, squared):
+        if gain < 1 and not self._has_been_moved(anchor, squared, half_hidden=half_hidden):
             if parameters.space == "image":
                 box = _mixed(anchor.box, box, gain)
             position = _between(anchor.position, position, gain)
-        size = detection.size
+        size = anchor.size if half_hidden else detection.size
         if size is None and position is not None:
             size = self.view.size_of(detection.box, detection.position)
         streak = anchor.streak
@@ -152,10 +153,13 @@ class Sightings:
             streak,
         )
 
-    def _has_been_moved(self, anchor: Anchor, squared: float) -> bool:
+    def _has_been_moved(self, anchor: Anchor, squared: float, *, half_hidden: bool) -> bool:
         """Tell whether noise cannot be why an anchor is seen elsewhere."""
         if anchor.status is AnchorStatus.ATTACHED or anchor.name in self.parents:
             return True
+        # The middle of what shows of a thing is as far as half of it from its own middle.
+        if half_hidden and anchor.size is not None and squared <= max(anchor.size) ** 2 / 4:
+            return False
         # Half the radius is no noise: what comes back there has been moved.
         return anchor.status is not AnchorStatus.VISIBLE and squared > self.parameters.radius**2 / 4
 

@@ -6,6 +6,7 @@ sensor and the forces on the tool, goes over wires to the controller; a dry run 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from typing import Final
@@ -14,6 +15,7 @@ from aapa import Anchor, Camera, Detection
 from icarus_lite import Action, Outcome, Status, Value
 from icarus_lite.language.syntax import Domain
 from runtime.cell import Cell
+from runtime.cell.acts import Pointed, Report
 from runtime.cell.contact import Contact
 from runtime.drivers import ArmState
 
@@ -82,6 +84,7 @@ class CellColleague:
         self._source = source
         self._known = frozenset(known)
         self._holds: tuple[Value, ...] | None = None
+        self._let_go = cell.person.let_go
 
     def ask(self, action: Action, _sentence: str, anchors: Mapping[str, Anchor]) -> None:
         """Ask the person, pointing at each thing where it is anchored."""
@@ -91,15 +94,24 @@ class CellColleague:
         )
         self._cell.person.ask(action.name, things)
 
-    def reports(self) -> tuple[Outcome, ...]:
+    def reports(self, anchors: Mapping[str, Anchor]) -> tuple[Outcome, ...]:
         """Let the person go on until now, and give what was reported of it.
 
-        Who said that they hold something says as well when they let go of it.
+        Who said that they hold something says as well when they let go of it. What was not asked
+        for they tell in words of their own, and point: see `names_for`.
         """
         told = [
-            Outcome(Action(report.name, report.args), Status(report.status), report.reason)
+            Outcome(
+                Action(report.name, report.args if report.asked else names_for(report, anchors)),
+                Status(report.status),
+                report.reason,
+            )
             for report in self._cell.person.step(self._source.time_s)
         ]
+        if self._let_go is not None:
+            name = _anchored_as(self._let_go, anchors) or self._let_go.type
+            told.append(Outcome(Action(LET_GO, (name,))))
+            self._let_go = None
         if self._holds is not None and self._cell.person.holds is None:
             told.append(Outcome(Action(LET_GO, self._holds)))
             self._holds = None
@@ -107,6 +119,31 @@ class CellColleague:
             if outcome.action.name == HOLD and outcome.status is Status.SUCCEEDED:
                 self._holds = outcome.action.args
         return tuple(outcome for outcome in told if outcome.action.name in self._known)
+
+
+def names_for(report: Report, anchors: Mapping[str, Anchor]) -> tuple[str, ...]:
+    """Give the arguments of a report as the names of what is anchored.
+
+    The one anchor of its type is meant; of several, the one nearest to where the person points.
+    What has no anchor keeps the name that it was given.
+    """
+    pointed = report.pointed or (None,) * len(report.args)
+    return tuple(
+        given if thing is None else _anchored_as(thing, anchors) or given
+        for given, thing in zip(report.args, pointed, strict=True)
+    )
+
+
+def _anchored_as(thing: Pointed, anchors: Mapping[str, Anchor]) -> str | None:
+    alike = [anchor for anchor in anchors.values() if anchor.type == thing.type]
+    placed = [
+        (math.dist(anchor.position, thing.place), anchor.name)
+        for anchor in alike
+        if anchor.position is not None
+    ]
+    if placed:
+        return min(placed)[1]
+    return alike[0].name if len(alike) == 1 else None
 
 
 def known_actions(domain: Domain) -> frozenset[str]:

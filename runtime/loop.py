@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Final, Protocol
 
-from aapa import Anchor, Anchoring, Attachment, Camera, Detection
+from aapa import Anchor, Anchoring, AnchorStatus, Attachment, Camera, Detection
 from icarus_lite import Action, Agent, Decision, DecisionKind, Outcome, Request, Status
 from icarus_lite.execution import NO_ANSWER, patience_s
 from icarus_lite.planning import PlanStep
@@ -17,14 +17,16 @@ from runtime.config import RobotConfig
 from runtime.cycle_report import CycleReport
 from runtime.drivers import PARK, ArmState, Driver, Recoverable
 from runtime.errors import ControllerError, DriverError
+from runtime.expecting import Expectation
 from runtime.interruption import Interruption
 from runtime.people import People
-from runtime.percepts import PERSON_TYPE, hand_detection, percepts_of
+from runtime.percepts import hand_detection, is_in_company, percepts_of
 from runtime.run_record import LoopResult, RunRecord
 from runtime.second_look import LoopLimits, SecondLook
 
 _ARM_NOTICES_WITHIN_S: Final = 3.0  # longer than a driver believes a silent controller
 _LOOK_EVERY_S: Final = 0.02
+_GRASP: Final = "grasp"
 
 
 class PerceptSource(Protocol):
@@ -107,6 +109,7 @@ class Loop:
         self._second_look = SecondLook(driver, self._limits, begun=taken_up is None)
         self._started_s = 0.0
         self._company = False
+        self._expectation = Expectation()
         self._interruption = Interruption()
         self._asked_since = -1
         self._cycles = 0
@@ -190,24 +193,48 @@ class Loop:
         return Outcome(running.step.action, Status.FAILED, reason)
 
     def _poll(self) -> tuple[Outcome, ...]:
-        outcome, self._aborted = self._aborted or self._driver.poll(self._by_name()), None
+        broken_off, self._aborted = self._aborted, None
+        if broken_off is not None:
+            return (self._measured(broken_off),)
+        outcome = self._driver.poll(self._by_name())
         return () if outcome is None else (outcome,)
+
+    def _measured(self, broken_off: Outcome) -> Outcome:
+        """Give what came of an action that was broken off, as far as it can be measured.
+
+        Fingers that feel a part after a grasp hold it, whoever was told of it.
+        """
+        grasps = any(
+            [command.predicate for command in clause.actions] == [_GRASP]
+            for clause in self._agent.domain.skills
+            if clause.head.predicate == broken_off.action.name
+        )
+        if broken_off.status is not Status.FAILED or not grasps:
+            return broken_off
+        self._source.update(self._driver.state())
+        if not self._driver.state().gripped:
+            return broken_off
+        return Outcome(broken_off.action, reason=f"it holds the part, though {broken_off.reason}")
 
     def _cycle(self, outcomes: tuple[Outcome, ...]) -> CycleReport:
         """See, anchor, infer, decide; write it down."""
         times = [time.perf_counter()]
         arm = self._driver.state()
         self._source.update(arm)
-        outcomes = self._outcomes = (*outcomes, *self._people.colleague.reports())
+        outcomes = self._outcomes = (*outcomes, *self._people.colleague.reports(self._by_name()))
         detections, camera = self._source.look()
         times.append(time.perf_counter())
         hand = hand_detection(arm, camera, self._config)
-        before = self._anchors
-        self._anchors = self._anchoring.update([*detections, hand], self._attachments(), camera)
+        before, attachments = self._anchors, self._attachments()
+        self._anchors = self._anchoring.update([*detections, hand], attachments, camera)
+        self._company = is_in_company(self._anchors, detections)
+        self._second_look.notice(company=self._company)
+        expected = self._expectation.update(
+            self._anchors, detections, attachments, camera, company=self._company
+        )
         times.append(time.perf_counter())
         acting = any(outcome.status is Status.RUNNING for outcome in outcomes)
-        percepts = percepts_of(self._anchors, arm, self._config, acting=acting)
-        self._company = any(percept.type == PERSON_TYPE for percept in percepts)
+        percepts = percepts_of(self._anchors, arm, self._config, acting=acting, expected=expected)
         decision = self._agent.cycle(percepts, outcomes)
         times.append(time.perf_counter())
         self._note(decision.cycle, outcomes, before)
@@ -297,14 +324,39 @@ class Loop:
             return _End(no_way)
         if not look.there:
             return None
-        look.count(now_s)
-        if decision.kind is DecisionKind.ACHIEVED:
-            done = look.confirmed(now_s, company=self._company)
+        achieved = decision.kind is DecisionKind.ACHIEVED
+        wanted = [str(term) for goal in self._agent.goals for term in goal.atom.args]
+        unsettled = self._company or (achieved and self._is_unsettled(wanted))
+        look.count(now_s, achieved=achieved, unsettled=unsettled)
+        if achieved:
+            done = look.confirmed(now_s, doubtful=self._is_doubtful(wanted))
             return _End(decision.reason, achieved=True) if done else None
         if not look.in_vain(now_s):
             return None
-        wanted = [str(term) for goal in self._agent.goals for term in goal.atom.args]
         return _End("; ".join([decision.reason, *self._record.gone(wanted)]))
+
+    def _is_unsettled(self, wanted: Collection[str]) -> bool:
+        """Tell whether something begins to speak against what is believed of the goals' objects.
+
+        A belief is in doubt, or what there is but one of is seen in another place.
+        """
+        unique = self._anchoring.parameters.unique_types
+        return bool(self._agent.state.doubts) or any(
+            anchor.type in unique
+            and anchor.type in wanted
+            and anchor.name not in wanted
+            and anchor.status is AnchorStatus.VISIBLE
+            for anchor in self._anchoring.anchors
+        )
+
+    def _is_doubtful(self, wanted: Collection[str]) -> bool:
+        """Tell whether a goal is believed of what is not seen, though it may have been taken."""
+        visited, shown = self._second_look.visited, self._expectation.shown
+        return any(
+            anchor.status is AnchorStatus.ATTACHED and (visited or anchor.name in shown)
+            for anchor in self._anchors
+            if anchor.name in wanted
+        )
 
     def _note(self, cycle: int, outcomes: Sequence[Outcome], before: Sequence[Anchor]) -> None:
         self._record.cycle(cycle, outcomes, before, self._anchors, self._anchoring.frame)

@@ -23,8 +23,13 @@ class Colleague(Protocol):
     def ask(self, action: Action, sentence: str, anchors: Mapping[str, Anchor]) -> None:
         """Ask for an action, with the objects where they are anchored now. Does not wait."""
 
-    def reports(self) -> tuple[Outcome, ...]:
-        """Give what has been reported since the last call: actions done, asked for or not."""
+    def reports(self, anchors: Mapping[str, Anchor]) -> tuple[Outcome, ...]:
+        """Give what has been reported since the last call: actions done, asked for or not.
+
+        Args:
+            anchors: The objects where they are anchored now. What is reported speaks of them by
+                their names, whatever names the other agent has for them.
+        """
 
 
 class Nobody:
@@ -33,7 +38,7 @@ class Nobody:
     def ask(self, action: Action, sentence: str, anchors: Mapping[str, Anchor]) -> None:
         """Say it to an empty room."""
 
-    def reports(self) -> tuple[Outcome, ...]:
+    def reports(self, _anchors: Mapping[str, Anchor]) -> tuple[Outcome, ...]:
         """Report nothing."""
         return ()
 

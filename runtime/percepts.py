@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 
 from aapa import Anchor, AnchorStatus, Camera, Detection
 from icarus_lite import Percept, Value
@@ -51,33 +51,57 @@ def hand_detection(arm: ArmState, camera: Camera, config: RobotConfig) -> Detect
 
 
 def percepts_of(
-    anchors: Iterable[Anchor], arm: ArmState, config: RobotConfig, *, acting: bool = False
+    anchors: Iterable[Anchor],
+    arm: ArmState,
+    config: RobotConfig,
+    *,
+    acting: bool = False,
+    expected: Collection[str] = (),
 ) -> tuple[Percept, ...]:
     """Tell the anchors as percepts of `gearbox.icr`: `hand`, `person`, `object`; m, base frame.
 
-    A person moves unasked: out of view, missed where nothing hides them, or hidden for more than a
-    moment, they are gone.
+    A person moves unasked: see `is_about`.
 
     Args:
         anchors: What is anchored.
         arm: What the arm measures of itself.
         config: The robot.
         acting: Whether an action of its own is under way.
+        expected: The names of what should be seen here and is not: see `runtime.expecting`.
     """
-    return tuple(_percepts(anchors, arm, config, "yes" if acting else "no"))
+    return tuple(_percepts(anchors, arm, config, "yes" if acting else "no", expected))
+
+
+def is_in_company(anchors: Iterable[Anchor], detections: Iterable[Detection]) -> bool:
+    """Tell whether a person's hand is in sight, be it for the first time."""
+    return any(each.type == PERSON_TYPE for each in detections) or any(
+        anchor.type == PERSON_TYPE and is_about(anchor) for anchor in anchors
+    )
+
+
+def is_about(person: Anchor) -> bool:
+    """Tell whether a person's hand, anchored once, is still about.
+
+    Out of view, missed where nothing hides it, or hidden for more than a moment, it is gone.
+    """
+    return person.status is AnchorStatus.VISIBLE or (
+        person.status is AnchorStatus.OCCLUDED and person.streak > -_PERSON_STAYS
+    )
 
 
 def _percepts(
-    anchors: Iterable[Anchor], arm: ArmState, config: RobotConfig, acting: Value
+    anchors: Iterable[Anchor],
+    arm: ArmState,
+    config: RobotConfig,
+    acting: Value,
+    expected: Collection[str],
 ) -> Iterator[Percept]:
     for anchor in anchors:
         if anchor.type == HAND_TYPE:
             yield _hand(anchor, arm, config, acting)
         elif anchor.type != PERSON_TYPE:
-            yield _object(anchor)
-        elif anchor.status is AnchorStatus.VISIBLE or (
-            anchor.status is AnchorStatus.OCCLUDED and anchor.streak > -_PERSON_STAYS
-        ):
+            yield _object(anchor, expected=anchor.name in expected)
+        elif is_about(anchor):
             yield Percept("person", anchor.name, {**_position(anchor), "seen": _seen(anchor)})
 
 
@@ -91,13 +115,15 @@ def _hand(anchor: Anchor, arm: ArmState, config: RobotConfig, acting: Value) -> 
     return Percept("hand", anchor.name, attributes)
 
 
-def _object(anchor: Anchor) -> Percept:
+def _object(anchor: Anchor, *, expected: bool) -> Percept:
     attributes: dict[str, Value] = {"type": anchor.type, **_position(anchor)}
     if anchor.size is not None:
         attributes["width"] = round(anchor.size[0], _MM)
         attributes["height"] = round(anchor.size[1], _MM)
     attributes["seen"] = _seen(anchor)
     attributes["status"] = str(anchor.status)
+    if expected:
+        attributes["expected"] = "yes"
     return Percept("object", anchor.name, attributes)
 
 

@@ -21,6 +21,7 @@ from icarus_lite.language.syntax import Domain
 from icarus_lite.trace import Recording, parse_action, resumed_agent, stream_trace
 from runtime.cycle_report import CycleReport
 from runtime.errors import UsageError
+from runtime.percepts import PERSON_TYPE
 from runtime.workplace import Workplace
 
 CUT_OFF = "the run was cut off while it was under way"
@@ -33,15 +34,16 @@ def world_path(trace: Path) -> Path:
 
 
 def world_keeper(workplace: Workplace, trace: Path) -> Callable[[CycleReport], None]:
-    """Give an observer that writes the simulated cell down whenever it has changed.
+    """Write the simulated cell down, and give an observer that does whenever it has changed.
 
     A real cell stays as it is when the program that ran in it is gone; a simulated one is gone
-    with it, so that a run could not be taken up. The file is replaced in one go.
+    with it, so that a run could not be taken up. The file is there before the first line of the
+    trace, and is replaced in one go.
     """
     path, draft = world_path(trace), trace.with_suffix(".cell.json.new")
     last: Mapping[str, object] | None = None
 
-    def keep(_report: CycleReport) -> None:
+    def keep(_report: CycleReport | None = None) -> None:
         nonlocal last
         world = workplace.cell.snapshot()
         if world != last:
@@ -49,6 +51,8 @@ def world_keeper(workplace: Workplace, trace: Path) -> Callable[[CycleReport], N
             draft.replace(path)
             last = world
 
+    path.parent.mkdir(parents=True, exist_ok=True)
+    keep()
     return keep
 
 
@@ -199,7 +203,10 @@ def _last_line(recording: Recording) -> _Line:
 
 
 def _anchoring(line: _Line) -> AnchoringState:
-    """Give what anchoring remembered of what it reported."""
+    """Give what anchoring remembered of what it reported.
+
+    But for people: where their hands are now has nothing to do with where they were.
+    """
     anchors = (
         Anchor(
             row.name,
@@ -215,5 +222,6 @@ def _anchoring(line: _Line) -> AnchoringState:
             row.streak,
         )
         for row in line.anchors
+        if row.type != PERSON_TYPE
     )
     return AnchoringState.of(anchors, line.cycle + 1)

@@ -29,7 +29,7 @@ from gearbox.plans import (
     silent,
     taken,
 )
-from gearbox.trials import NO_FAULT, Trial
+from gearbox.trials import NO_FAULT, TASKS, Trial
 
 
 class Cause(StrEnum):
@@ -51,8 +51,11 @@ class Kind:
         words: What happens, for the page.
         plan: Draws what is to happen in a run of a task.
         signs: Patterns of what a witness tells when it has struck: see `judging.Judge.events`.
-            The controller's faults are in its journal.
+            `{part}` stands for the type of the task's part. The controller's faults are in its
+            journal.
         reasons: Patterns of the reasons that are true if the run fails.
+        takes: Whether the person takes parts away. That one is not seen is then a true reason, if
+            it is really away in the end.
         tasks: The tasks in which it can happen; none stands for all.
     """
 
@@ -61,6 +64,7 @@ class Kind:
     plan: Planner
     signs: tuple[str, ...] = ()
     reasons: tuple[str, ...] = ()
+    takes: bool = False
     tasks: tuple[str, ...] = ()
 
 
@@ -72,8 +76,14 @@ WITHOUT_ATTACHMENTS: Final = (
 )
 """Reasons that are true of a run without attachments: what is hidden is lost from sight."""
 
-_GONE: Final = (*WITHOUT_ATTACHMENTS, r"\^seen yes")
-"""Reasons that are true of a part that a person has taken: it is nowhere to be seen."""
+_GONE: Final = (
+    r"\b{part}\b.* is not perceived",
+    r"\b{part} is no longer anchored",
+    r"\(object {part} .*\^seen yes\)",
+)
+"""Reasons that are true of a part that a person has taken, as long as it is really away."""
+
+_MOVED: Final = r"^moved by hand: {part}(-\d+)?$"
 
 _LINK: Final = (
     r"the connection to the controller at \S+ was lost",
@@ -165,29 +175,28 @@ KINDS: Final[Mapping[str, Kind]] = MappingProxyType(
             Cause.PERSON,
             "the person takes the part away once it is in, says so, and puts it back on the table",
             taken(reports=True, back=True),
-            (r"^person: take-away", r"^moved by hand: "),
-            _GONE,
+            (_MOVED,),
+            takes=True,
         ),
         "taken_silently": Kind(
             Cause.PERSON,
             "the same without a word",
             taken(reports=False, back=True),
-            (r"^person: take-away", r"^moved by hand: "),
-            _GONE,
+            (_MOVED,),
+            takes=True,
         ),
         "kept": Kind(
             Cause.PERSON,
             "the person takes the part away once it is in, says so, and keeps it",
             taken(reports=True, back=False),
-            (r"^person: take-away", r"^moved by hand: "),
-            _GONE,
+            (_MOVED,),
+            takes=True,
         ),
         "moved": Kind(
             Cause.PERSON,
             "the person puts the part elsewhere while the robot is on its way to it",
             moved,
-            (r"^person: put-back", r"^moved by hand: "),
-            _GONE,
+            (_MOVED,),
         ),
         "reaches_in": Kind(
             Cause.PERSON,
@@ -200,8 +209,8 @@ KINDS: Final[Mapping[str, Kind]] = MappingProxyType(
             "the person does not do what is asked, each time with probability 0.5",
             refusing(0.5),
             (r"does not want to do that now",),
-            (r"does not want to do that now", r"no answer"),
-            ("1.3", "2.2"),
+            (r"does not want to do that now",),
+            tasks=("1.3", "2.2"),
         ),
         "silent": Kind(
             Cause.PERSON,
@@ -239,11 +248,19 @@ def applies(trial: Trial) -> bool:
 
 def signs_of(trial: Trial, events: Iterable[str]) -> tuple[str, ...]:
     """Give those of the events that witnesses tell which are signs that a run's fault struck."""
-    signs = KINDS[trial.fault].signs
+    part = re.escape(TASKS[trial.task].part)
+    signs = [sign.replace("{part}", part) for sign in KINDS[trial.fault].signs]
     return tuple(event for event in events if any(re.search(sign, event) for sign in signs))
 
 
-def true_reasons(trial: Trial) -> tuple[str, ...]:
-    """Give the patterns of the reasons that are true if a run fails."""
-    own = KINDS[trial.fault].reasons
-    return own if trial.attachments else (*own, *WITHOUT_ATTACHMENTS)
+def true_reasons(trial: Trial, away: Iterable[str] = ()) -> tuple[str, ...]:
+    """Give the patterns of the reasons that are true if a run fails.
+
+    Args:
+        trial: The run.
+        away: The types of the task's parts that the person really has in the end.
+    """
+    kind = KINDS[trial.fault]
+    own = kind.reasons if trial.attachments else (*kind.reasons, *WITHOUT_ATTACHMENTS)
+    taken = [re.escape(part) for part in away] if kind.takes else []
+    return (*own, *(each.replace("{part}", part) for part in taken for each in _GONE))

@@ -29,6 +29,7 @@ ASTRAY_M: Final = 0.06
 `runtime/data/anchoring.yaml`."""
 
 _FAR_M: Final = 10.0
+_OWN_SIDE_M: Final = 0.75  # beyond it nothing is in reach, or in view
 _MOVED_M: Final = 0.03
 
 
@@ -54,6 +55,10 @@ class Colleague(Protocol):
     @property
     def holds(self) -> str | None:
         """The part that is held where it stands, if any."""
+
+    @property
+    def carries(self) -> str | None:
+        """The part that is carried, if any."""
 
 
 class Truth(Protocol):
@@ -82,6 +87,8 @@ class Verdict:
 
     Args:
         true: Whether the task was really done in the end.
+        away: The types of the task's parts that the person has in the end, in hand or on their own
+            side of the table.
         false_at_end: Beliefs of the last cycle that were not true.
         episodes: What was believed without being true, at any time.
         places: How far anchors were from their objects.
@@ -94,6 +101,7 @@ class Verdict:
     """
 
     true: bool
+    away: tuple[str, ...]
     false_at_end: tuple[str, ...]
     episodes: tuple[Episode, ...]
     places: Places
@@ -149,6 +157,17 @@ def is_done(benchmark: Benchmark, truth: Truth) -> bool:
     ) and (truth.held is None or kind_of(truth.held) not in dict(benchmark.seated))
 
 
+def taken_away(benchmark: Benchmark, truth: Truth) -> set[str]:
+    """Give the types of a task's parts that the person has, in hand or on their own side."""
+    wanted = {kind for pair in benchmark.seated for kind in pair}
+    return {
+        kind_of(part.name)
+        for part in truth.parts.values()
+        if kind_of(part.name) in wanted
+        and (part.name == truth.person.carries or part.position[0] > _OWN_SIDE_M)
+    }
+
+
 class Judge:
     """Watches a run beside the ground truth; give it to the loop as its observer.
 
@@ -201,6 +220,7 @@ class Judge:
         )
         return Verdict(
             is_done(self._benchmark, self._truth),
+            tuple(sorted(taken_away(self._benchmark, self._truth))),
             tuple(sorted(self._open)),
             (*self._closed, *self._open.values()),
             places,
@@ -230,14 +250,14 @@ class Judge:
         held = self._truth.held
         if self._held is not None and held is None and report.arm.gripper_closed:
             self._events[f"slipped: {self._held}"] = None
-        now = {name: part.position for name, part in self._truth.parts.items()}
-        for name, place in now.items():
-            if (
-                name not in {held, self._held}
-                and math.dist(self._stood.get(name, place), place) > _MOVED_M
-            ):
+        for name, part in self._truth.parts.items():
+            moved = math.dist(self._stood.setdefault(name, part.position), part.position) > _MOVED_M
+            if moved and name not in {held, self._held}:
                 self._events[f"moved by hand: {name}"] = None
-        self._held, self._stood = held, now
+            # From a cycle to the next a hand goes but a little way: it is the sum that tells.
+            if moved or name in {held, self._held}:
+                self._stood[name] = part.position
+        self._held = held
         doing = self._truth.person.doing
         if doing is not None:
             self._events[f"person: {doing}"] = None

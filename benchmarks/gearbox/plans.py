@@ -10,8 +10,9 @@ from typing import Any, Final, TypeAlias
 
 from gearbox.trials import TASKS, Trial
 from runtime.cell import Act, PersonParameters
-from runtime.cell.layout import random_layout
-from runtime.parts import load_parts
+from runtime.cell.arrangement import PlacedPart
+from runtime.cell.layout import LayoutParameters, random_layout
+from runtime.parts import Vector, load_parts
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,11 +44,7 @@ _TRAVEL_RAD: Final = (0.1, 4.0)
 _WILLING: Final = 0.5
 """The share of the runs in which the operator gives the word to go on."""
 
-_ELSEWHERE_M: Final = ((0.32, 0.55), (-0.22, 0.22))
-"""Where the person puts parts: x and y."""
-
-_APART_M: Final = 0.1
-"""How far from the middle of everything else."""
+_TRIES: Final = 400
 
 _CYCLES: Final = (1, 60)
 """When a program is killed."""
@@ -103,7 +100,7 @@ def taken(*, reports: bool, back: bool) -> Planner:
         after = round(rng.uniform(0.0, 2.0), 3)
         acts = [Act("take-away", (part,), when="inserted", after_s=after)]
         if back:
-            x, y = (f"{value:.3f}" for value in free_place(rng, trial.seed))
+            x, y = (f"{value:.3f}" for value in free_place(rng, trial.seed, part))
             acts.append(Act("put-back", (part, x, y), when="inserted", after_s=after + 1.0))
         return Plan(person=PersonParameters(tuple(acts), reports))
 
@@ -113,19 +110,39 @@ def taken(*, reports: bool, back: bool) -> Planner:
 def moved(rng: random.Random, trial: Trial) -> Plan:
     """Plan that the person puts the task's part elsewhere before the robot gets there."""
     part = TASKS[trial.task].part
-    x, y = (f"{value:.3f}" for value in free_place(rng, trial.seed))
+    x, y = (f"{value:.3f}" for value in free_place(rng, trial.seed, part))
     at_s = round(rng.uniform(0.0, 6.0), 3)
     return Plan(person=PersonParameters((Act("put-back", (part, x, y), at_s=at_s),)))
 
 
-def free_place(rng: random.Random, seed: int) -> tuple[float, float]:
-    """Draw a place of the table, m, on which nothing stands in the scene of a seed."""
-    layout = random_layout(load_parts(), seed)
-    places = [each.position[:2] for each in (*layout.parts, layout.fixture)]
-    while True:
-        place = (rng.uniform(*_ELSEWHERE_M[0]), rng.uniform(*_ELSEWHERE_M[1]))
-        if all(math.dist(place, each) > _APART_M for each in places):
-            return place
+def free_place(rng: random.Random, seed: int, kind: str) -> tuple[float, float]:
+    """Draw a place of the table, m, for a part of a kind: in view, in reach, and beside nothing.
+
+    What stands in the scene of a seed is in the way, but for the part itself.
+    """
+    layout, wanted = random_layout(load_parts(), seed), load_parts()[kind]
+    others = [each for each in layout.parts if each.model.type != kind]
+    room = LayoutParameters()
+    for _ in range(_TRIES):
+        x = rng.uniform(*_within(room.x_m, wanted.size[0]))
+        y = rng.uniform(*_within(room.y_m, wanted.size[1]))
+        if room.reach_m[0] <= math.hypot(x, y) <= room.reach_m[1] and all(
+            _gap((x, y), wanted.size, each) >= room.gap_m for each in (*others, layout.fixture)
+        ):
+            return x, y
+    # A large part on a full table: where it stood at first there is room for it.
+    return next(each.position[:2] for each in layout.parts if each.model.type == kind)
+
+
+def _within(span: tuple[float, float], size: float) -> tuple[float, float]:
+    return span[0] + size / 2, span[1] - size / 2
+
+
+def _gap(place: tuple[float, float], size: Vector, other: PlacedPart) -> float:
+    """Give the free space between the outlines, unturned, of a part and of one that stands, m."""
+    dx = abs(place[0] - other.position[0]) - (size[0] + other.model.size[0]) / 2
+    dy = abs(place[1] - other.position[1]) - (size[1] + other.model.size[1]) / 2
+    return math.hypot(max(dx, 0.0), max(dy, 0.0))
 
 
 def reaches_in(rng: random.Random, trial: Trial) -> Plan:

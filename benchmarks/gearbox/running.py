@@ -294,5 +294,5 @@ def _ending(trial: Trial, course: _Course) -> Ending:
         troubled=bool(course.recoveries)
         or (verdict is not None and bool(verdict.troubles or verdict.withdrawn)),
         reason=course.reason,
-        reasons=true_reasons(trial),
+        reasons=true_reasons(trial, () if verdict is None else verdict.away),
     )

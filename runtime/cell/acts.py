@@ -7,6 +7,7 @@ from typing import Literal, TypeAlias
 
 from runtime.cell.errands import SKILLS
 from runtime.errors import UsageError
+from runtime.parts import Vector
 
 When: TypeAlias = Literal["held", "inserted"]
 """An occasion: the robot first holds a part, or has first inserted one."""
@@ -69,6 +70,19 @@ class PersonParameters:
 
 
 @dataclass(frozen=True, slots=True)
+class Pointed:
+    """A thing as somebody tells of it who points: "this bearing, which was there".
+
+    Args:
+        type: What it is.
+        place: Where it was when they began, m in the base frame.
+    """
+
+    type: str
+    place: Vector
+
+
+@dataclass(frozen=True, slots=True)
 class Report:
     """What has ended: a skill, the names as they were asked, and how.
 
@@ -78,6 +92,8 @@ class Report:
         status: "succeeded" or "failed".
         reason: Why it failed.
         asked: Whether somebody had asked for it.
+        pointed: Of what nobody had asked for: for each argument the thing that is meant; None for
+            what is no thing.
     """
 
     name: str
@@ -85,6 +101,7 @@ class Report:
     status: Literal["succeeded", "failed"]
     reason: str = ""
     asked: bool = True
+    pointed: tuple[Pointed | None, ...] = ()
 
 
 def check_act(name: str, args: tuple[str, ...]) -> None:

@@ -138,6 +138,7 @@ class Cell:
         self._detector = SegmentationDetector(seed, self._parameters.detector)
         self._person = Person(self._world, seed, self._parameters.person)
         self._joints = self._look_joints
+        self._wrist: float | None = None
         self._frame = 0
         self._seen: tuple[tuple[object, ...], Segmentation] | None = None
 
@@ -191,7 +192,10 @@ class Cell:
         q1, q2, q3, q4, q5, q6 = (float(angle) for angle in joints)
         self._joints = (q1, q2, q3, q4, q5, q6)
         tool = forward(self._arm, self._joints) @ self._tcp
-        return self._world.step(tool, closed=gripper_closed, force_n=abs(force_n))
+        # Looking down, the tool turns with wrist 3 the other way about, and hardly with the rest.
+        spun = 0.0 if self._wrist is None else self._wrist - q6
+        self._wrist = q6
+        return self._world.step(tool, closed=gripper_closed, force_n=abs(force_n), spun_rad=spun)
 
     def contact(self) -> Contact | None:
         """Give what the held part could touch around here; None if it is far from everything.
@@ -214,6 +218,7 @@ class Cell:
             kept.get("person"), Mapping
         ):
             raise UsageError("This is no cell that was written down: it has no world or person.")
+        self._wrist = None
         carried = self._world.restore(kept["world"])
         self._person.restore(kept["person"], carried)
 

@@ -116,7 +116,7 @@ class Errands:
         yield from self._fetch(obj)
         lift = hand.place[2] - self._world.parts[obj].position[2]
         height = self._world.parts[obj].model.size[2] / 2 + lift
-        yield from self._across((*wanted, height + 0.004))
+        yield from self._across((*hand.free_near(obj, wanted), height + 0.004))
         hand.put_down()
         yield from self._home()
         yield Done()

@@ -23,6 +23,10 @@ _NEAR_M: Final = 0.15  # a part farther than this from where it is said to be is
 _BESIDE_M: Final = 0.055  # the palm from the side of a part it holds where it stands
 _LOW_M: Final = 0.012
 _ABOVE_M: Final = 0.012  # the palm over the top of a part it holds
+_SPOT_M: Final = 0.01  # between the places looked at to put a part down
+_LOOKS: Final = 15  # of them to each side
+_ROOM_M: Final = 0.015  # left free around a part that is put down
+_LEVEL_M: Final = 1e-6
 
 
 class StoppedError(Exception):
@@ -180,6 +184,27 @@ class HelpingHand:
             raise StoppedError(f"something is in the way of the {self._kind(name)}")
         self._world.insert(name, into)
         self.carries = None
+
+    def free_near(self, name: str, wanted: tuple[float, float]) -> tuple[float, float]:
+        """Give the nearest place, m, at which a part would stand on the table and beside nothing.
+
+        Whoever puts a part down sees what stands there already. The wanted place itself if no
+        free one is near.
+        """
+        part = self._world.parts[name]
+        ticks = np.arange(-_LOOKS, _LOOKS + 1) * _SPOT_M
+        aside = np.stack(np.meshgrid(ticks, ticks, indexing="ij"), axis=-1).reshape(-1, 2)
+        aside = aside[np.argsort(np.hypot(*aside.T), kind="stable")]
+        around = [(x, y) for x in (0.0, -_ROOM_M, _ROOM_M) for y in (0.0, -_ROOM_M, _ROOM_M)]
+        places = (np.asarray(wanted) + aside)[:, None, :] + np.asarray(around)
+        heights = self._world.arrangement.field(
+            name, heading(part.pose), places.reshape(-1, 2), ()
+        ).reshape(len(aside), -1)
+        free = (heights <= part.model.size[2] / 2 + _LEVEL_M).all(axis=1)
+        if not free.any():
+            return wanted
+        x, y = places[int(np.argmax(free)), 0].tolist()
+        return x, y
 
     def put_down(self) -> None:
         """Let go of what it carries; it falls onto what is below."""

@@ -85,13 +85,15 @@ class Insertion:
             if opening.receiver == parent and opening.seat.thread is not None and in_thread:
                 self.turning = self._into_thread(name, opening, tool_yaw, turned_rad)
 
-    def follow(self, name: str, tool: Matrix, force_n: float) -> bool:
+    def follow(self, name: str, tool: Matrix, force_n: float, spun_rad: float = 0.0) -> bool:
         """Note where the part is now. Give whether it stays behind in its thread.
 
         Args:
             name: The part in the hand.
             tool: (4, 4), the tool centre point.
             force_n: How hard it is pressed down.
+            spun_rad: How far the tool has turned about the vertical since the last look, about:
+                its pose tells that up to whole turns only.
         """
         x, y, z = self._arrangement.part(name).position
         for opening in self.openings(name):
@@ -111,7 +113,8 @@ class Insertion:
                 down = z <= opening.floor_m + _TAKES_HOLD_M
                 if down and beside <= _OFF_AXIS_M and jam is None:
                     self.turning = self._into_thread(name, opening, _yaw_of(tool), 0.0)
-        return self._turn(name, tool)
+                    spun_rad = 0.0  # that was before it was in
+        return self._turn(name, tool, spun_rad)
 
     def snapshot(self) -> list[list[object]]:
         """Give what was decided of each pair of parts: jam, m, and binding thread, rad."""
@@ -188,7 +191,7 @@ class Insertion:
         self._arrangement.settled += 1
         return Turning(opening.receiver, turned_rad, tool_yaw, tool_yaw, end, binds is not None)
 
-    def _turn(self, name: str, tool: Matrix) -> bool:
+    def _turn(self, name: str, tool: Matrix, spun_rad: float) -> bool:
         turning = self.turning
         if turning is None:
             return False
@@ -196,8 +199,8 @@ class Insertion:
         if not into:
             return False
         opening, height = into[0], self._arrangement.part(name).position[2]
-        step = math.remainder(_yaw_of(tool) - turning.yaw, 2 * math.pi)
-        self.turning = turning = replace(turning, yaw=turning.yaw + step)
+        off = math.remainder(_yaw_of(tool) - turning.yaw - spun_rad, 2 * math.pi)
+        self.turning = turning = replace(turning, yaw=turning.yaw + spun_rad + off)
         key = (name, turning.receiver)
         if turning.binds and turning.turned_rad >= turning.end_rad:
             self._bound.add(key)

@@ -17,6 +17,7 @@ the same acts.
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -24,7 +25,7 @@ from typing import Any, Final, Literal
 
 import numpy as np
 
-from runtime.cell.acts import PersonParameters, Report, When, check_act
+from runtime.cell.acts import PersonParameters, Pointed, Report, When, check_act
 from runtime.cell.body import REST, Body, body_at
 from runtime.cell.errands import SKILLS, Done, Errand, Errands, Target
 from runtime.cell.helping_hand import HelpingHand, Leg, StoppedError, Until
@@ -32,6 +33,7 @@ from runtime.cell.world import World
 from runtime.parts import Vector
 
 _FASTEST_S: Final = 0.35  # no motion of the hand is shorter
+_HOLD: Final = "hold"
 _REFUSAL: Final = "the person does not want to do that now"
 
 
@@ -80,8 +82,15 @@ class Person:
         self._move_began_s = 0.0
         self._has_waited = False
         self._told = False
+        self._pointed: tuple[Pointed | None, ...] = ()
         self._reports: list[Report] = []
         self._is_there = False
+        self._let_go: Pointed | None = None
+
+    @property
+    def let_go(self) -> Pointed | None:
+        """What they held when they were written down, and say that they have let go of since."""
+        return self._let_go
 
     @property
     def body(self) -> Body | None:
@@ -140,6 +149,7 @@ class Person:
         self._follow_script(now)
         at = self._now_s
         self._now_s = now
+        self._say_again(now)
         while self._advance(at, now):
             at = self._move_began_s
         reports, self._reports = tuple(self._reports), []
@@ -155,6 +165,7 @@ class Person:
             "acts_left": left,
             "elapsed_s": elapsed,
             "there": self._is_there,
+            "holds": self._hand.holds,
         }
 
     def restore(self, kept: Mapping[str, Any], carried: Iterable[str]) -> None:
@@ -168,6 +179,9 @@ class Person:
         """
         self._hand.restore(kept, carried)
         self._hand.unpin()
+        held = self._world.parts.get(str(kept.get("holds")))
+        if held is not None and self._parameters.reports:
+            self._let_go = Pointed(held.model.type, held.position)
         acts = self._parameters.acts
         left = kept.get("acts_left", range(len(acts)))
         self._script = [acts[index] for index in left if 0 <= index < len(acts)]
@@ -183,6 +197,7 @@ class Person:
             self._waiting.remove(due)
             self._job, self._told, self._move = due, False, None
             self._move_began_s = max(at, due.begins_s)
+            self._pointed = () if due.asked else tuple(self._meant(name) for name in due.args)
             self._errand = SKILLS[due.name][1](self._errands, due.targets)
             if due.refused:
                 self._end(_REFUSAL)
@@ -242,8 +257,17 @@ class Person:
         assert job is not None, "only what is under way is told of"
         if not self._told:
             status: Literal["succeeded", "failed"] = "failed" if reason else "succeeded"
-            self._reports.append(Report(job.name, job.args, status, reason, job.asked))
+            report = Report(job.name, job.args, status, reason, job.asked, self._pointed)
+            self._reports.append(report)
             self._told = True
+
+    def _meant(self, name: str) -> Pointed | None:
+        """Give what is meant by a name, where it is now; None if it is no thing that is there."""
+        try:
+            part = self._world.parts[self._hand.find(name, None)]
+        except StoppedError:
+            return None
+        return Pointed(part.model.type, part.position)
 
     def _end(self, reason: str = "") -> None:
         """End what is under way. Who could not do it takes the hand back all the same."""
@@ -255,9 +279,24 @@ class Person:
             self._told = True
             self._errand = self._errands.go_home()
 
+    def _say_again(self, now: float) -> None:
+        """Say once more that something is being held, to whoever asks for just that."""
+        held = self._hand.holds
+        if held is None or self._job is None or not self._told:
+            return
+        for job in [job for job in self._waiting if job.begins_s <= now and job.name == _HOLD]:
+            with contextlib.suppress(StoppedError):
+                if self._hand.find(*job.targets[0]) == held:
+                    self._waiting.remove(job)
+                    self._reports.append(_answer(job))
+
     def _is_released(self) -> bool:
-        """Tell whether something else is to be done than what is being held."""
-        return self._due(self._now_s) is not None
+        """Tell whether somebody asks for something else than what is being held.
+
+        What the person does of their own accord waits: who holds a part for a robot that presses
+        on it does not let go of it for something else.
+        """
+        return any(job.asked and job.begins_s <= self._now_s for job in self._waiting)
 
     def _due(self, now: float) -> _Job | None:
         """Give what is to be begun next, if its time has come."""
@@ -283,3 +322,10 @@ class Person:
 
     def _seated(self) -> frozenset[str]:
         return frozenset(part.name for part in self._world.parts.values() if part.seated)
+
+
+def _answer(job: _Job) -> Report:
+    """Give what is said at once to who asks for what is being done already."""
+    if job.refused:
+        return Report(job.name, job.args, "failed", _REFUSAL, job.asked)
+    return Report(job.name, job.args, "succeeded", asked=job.asked)

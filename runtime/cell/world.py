@@ -15,6 +15,7 @@ import numpy as np
 
 from runtime.cell.arrangement import FIXTURE, Arrangement, PlacedPart
 from runtime.cell.contact import Contact, Feeling
+from runtime.cell.fingers import UPRIGHT, between_fingers, pushed_aside
 from runtime.cell.insertion import Insertion
 from runtime.cell.keeping import HeldPart, parts_from_json, parts_to_json
 from runtime.cell.mishaps import Fate
@@ -24,7 +25,6 @@ from runtime.errors import UsageError
 from runtime.kinematics import Matrix
 from runtime.parts import GRIPPER_OPENING_M
 
-_UPRIGHT: Final = math.cos(math.radians(20))
 _PRESSES: Final = 2  # looks in a row at which a part is pressed too hard before it gives way
 _SHOVED_M: Final = 0.008
 _FROM_ABOVE_M: Final = 0.2
@@ -115,13 +115,17 @@ class World:
             return None
         return self._feeling.contact(self._held, self.tool)
 
-    def step(self, tcp: Matrix, *, closed: bool, force_n: float = 0.0) -> bool:
+    def step(
+        self, tcp: Matrix, *, closed: bool, force_n: float = 0.0, spun_rad: float = 0.0
+    ) -> bool:
         """Bring the hand to a pose, (4, 4), with its close output on or off.
 
         Args:
             tcp: The tool centre point.
             closed: Whether the close output is on.
             force_n: How hard the tool presses down, as the arm measures it, N.
+            spun_rad: How far it has turned about the vertical since the last step, whole turns
+                included, within half a turn: a pose does not tell those.
 
         Returns:
             Whether the hand's sensor feels a part between the fingers.
@@ -135,7 +139,8 @@ class World:
                 resumed.name, heading(tcp), resumed.receiver, resumed.turned_rad
             )
         if self._held is not None:
-            self._carry(self._held, before, force_n, opens=self._closed and not closed)
+            opens = self._closed and not closed
+            self._carry(self._held, before, force_n, spun_rad, opens=opens)
         if closed and not self._closed:
             self._grip(tcp)
         elif self._closed and not closed:
@@ -204,46 +209,43 @@ class World:
         return carried
 
     def _grip(self, tcp: Matrix) -> None:
+        hand = self._hand
         reachable = [
             (abs(across), name)
             for name, part in self.parts.items()
-            if (across := self._between_fingers(part, tcp)) is not None
+            if name not in self.arrangement.in_hands
+            and (across := between_fingers(part, tcp, hand.reach_across_m, hand.reach_height_m))
+            is not None
         ]
         if not reachable:
             return
         name = min(reachable)[1]
         was = self.parts[name]
         self._grasp = np.linalg.inv(tcp) @ was.pose
-        self._grasp[1, 3] = 0.0  # the fingers push it to the middle as they close
         self.arrangement.take(name)
+        mouths = self._insertion.openings(name)
+        self._grasp[1, 3] = pushed_aside(
+            was.pose,
+            tcp,
+            float(self._grasp[1, 3]),
+            lambda places: self.arrangement.field(name, heading(was.pose), places, mouths),
+        )
         self._held = name
         self._slips_after_m = self._fate.slip_after_m()
         self._pressed_looks = 0
         self.arrangement.move(name, tcp @ self._grasp)
         self._insertion.take_hold(name, heading(tcp), was.parent, was.turned_rad)
 
-    def _between_fingers(self, part: PlacedPart, tcp: Matrix) -> float | None:
-        """Give how far the part is off the fingers' plane, None if they would miss it."""
-        if part.name in self.arrangement.in_hands:
-            return None
-        across, along, below = np.linalg.solve(tcp, part.pose)[:3, 3].tolist()
-        fits = (
-            part.model.grippable
-            and float(tcp[:3, 2] @ part.pose[:3, 2]) <= -_UPRIGHT
-            and abs(across) <= self._hand.reach_across_m
-            and abs(along) <= (GRIPPER_OPENING_M - part.model.grip_width_m) / 2
-            and abs(below - part.model.grasp_height_m) <= self._hand.reach_height_m
-        )
-        return across if fits else None
-
-    def _carry(self, name: str, before: Matrix | None, force_n: float, *, opens: bool) -> None:
+    def _carry(
+        self, name: str, before: Matrix | None, force_n: float, spun_rad: float, *, opens: bool
+    ) -> None:
         tool = self.tool
         assert tool is not None, "a step brings the tool somewhere"
         self.arrangement.move(name, tool @ self._grasp)
         if not _upright(tool):
             return
         down_n = self._pressed_n()
-        stays = self._insertion.follow(name, tool, max(force_n, down_n or 0.0))
+        stays = self._insertion.follow(name, tool, max(force_n, down_n or 0.0), spun_rad)
         if stays:
             self._slip_off(name)
             return
@@ -382,4 +384,4 @@ class World:
 
 def _upright(tool: Matrix) -> bool:
     """Tell whether a tool, (4, 4), points down closely enough to press on anything."""
-    return float(tool[2, 2]) <= -_UPRIGHT
+    return float(tool[2, 2]) <= -UPRIGHT

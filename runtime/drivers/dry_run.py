@@ -32,6 +32,7 @@ from runtime.drivers.steps import (
     Turn,
     duration_s,
     grip_failure,
+    line_speed,
 )
 from runtime.errors import DriverError, UsageError
 from runtime.kinematics import Joints, matrix_to_pose, pose_to_matrix
@@ -146,7 +147,8 @@ class DryRunDriver(SteppingDriver):
                 done = travelled(whole, speeds.joint, speeds.joint_acceleration, self._step_time_s)
             case MoveLinear():
                 whole = step.length_m
-                done = travelled(whole, speeds.tool, speeds.tool_acceleration, self._step_time_s)
+                speed = line_speed(step, self._config)
+                done = travelled(whole, speed, speeds.tool_acceleration, self._step_time_s)
             case Press():
                 whole, done = step.length_m, force.descent_speed * self._step_time_s
             case Turn():

@@ -114,7 +114,7 @@ class Pressing:
         radius = self._step.spiral_m * self._angle / (2 * math.pi)
         self._went_m = max(self._went_m, math.dist(self._place, reading.pose[:2]))
         held = radius > self._step.search_m / 2 and self._went_m < _HELD * radius
-        if held or radius > self._step.search_m:
+        if held or radius > self._step.search_m or self._step.search_m <= 0:
             return self._failed(self._lost(reading, held=held), reading)
         arc = min(_ARC_M, self._force.search_speed * self._watch.step_s)
         self._angle += arc / math.hypot(radius, self._step.spiral_m)
@@ -154,7 +154,7 @@ class Pressing:
         if held:
             return f"jammed {standing}: it is held at its sides"
         if self._step.search_m <= 0:
-            return f"found no opening: it stands {standing}"
+            return f"something is in the way: it stands {standing}"
         return f"found no opening within {self._step.search_m * 1000:g} mm: it stands {standing}"
 
     def _to(self, phase: _Phase) -> Push:

@@ -20,7 +20,7 @@ from runtime.config import RobotConfig
 from runtime.drivers.driver import ArmState
 from runtime.drivers.force import Push
 from runtime.drivers.limits import tcp_matrix
-from runtime.drivers.steps import MoveJoints, MoveLinear
+from runtime.drivers.steps import MoveJoints, MoveLinear, line_speed
 from runtime.drivers.ur_dashboard import check_controller
 from runtime.drivers.ur_link import Lull, Silence
 from runtime.drivers.ur_safety import ONLY_ON_YOUR_WORD, stop_in_words
@@ -162,7 +162,8 @@ class UrConnection:
             self._control.moveJ(joints, speeds.joint, speeds.joint_acceleration, asynchronous=True)
         else:
             pose = [float(v) for v in step.pose]
-            self._control.moveL(pose, speeds.tool, speeds.tool_acceleration, asynchronous=True)
+            speed = line_speed(step, self._config)
+            self._control.moveL(pose, speed, speeds.tool_acceleration, asynchronous=True)
         return before
 
     def operation(self) -> tuple[int, bool]:

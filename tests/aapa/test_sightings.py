@@ -124,3 +124,19 @@ def test_many_pairs_become_what_each_of_them_becomes(parameters):
         for squared in (0.0, 16.0, 0.0025)
     ]
     assert frame.of_pairs(iter(pairs)) == [frame.of_old(*pair) for pair in pairs]
+
+
+def test_what_shows_of_a_large_thing_is_no_place_to_go_to():
+    # The right half of a case 0.2 m wide: its middle is 0.04 m from that of the whole.
+    whole = Anchor(
+        "case", "case", BOX, AnchorStatus.OUT_OF_VIEW, None, 1.0, (0.4, 0.0, 0.04), (0.2, 0.13)
+    )
+    half = Detection("case", NEAR, 0.77, (0.44, 0.0, 0.04), (0.12, 0.13))
+    base = sightings(space="base", tau=0.0036, position_gain=0.2, sure_score=0.95)
+    new = base.of_old(whole, half, 0.04**2)
+    assert new.status is AnchorStatus.VISIBLE
+    assert (new.position, new.size) == (whole.position, whole.size)
+    # All of it, seen there, has been moved there; so has a small thing that shows by half.
+    assert base.of_old(whole, replace(half, score=0.97), 0.04**2).position == half.position
+    plug = replace(whole, size=(0.03, 0.03))
+    assert base.of_old(plug, half, 0.04**2).position == half.position

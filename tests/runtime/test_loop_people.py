@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
-from scripted_assembly import CONFIG, PICK, Body, Eyes
+from scripted_assembly import CONFIG, INSERT, PICK, PLACES, Body, Eyes
 from scripted_push import DOMAIN, PUSH
 from scripted_push import Body as StandingBody
 from scripted_push import Eyes as CaseEyes
@@ -31,7 +31,7 @@ class Pusher:
     def ask(self, action: Action, sentence: str, anchors: Mapping[str, Anchor]) -> None:
         self.heard.append((str(action), sentence, tuple(sorted(anchors))))
 
-    def reports(self) -> tuple[Outcome, ...]:
+    def reports(self, _anchors: Mapping[str, Anchor]) -> tuple[Outcome, ...]:
         if not self.heard or self.left < 0:
             return ()
         self.left -= 1
@@ -73,7 +73,7 @@ def test_what_is_done_unasked_is_known_when_it_is_told(tmp_path):
         def __init__(self) -> None:
             self.calls = 0
 
-        def reports(self) -> tuple[Outcome, ...]:
+        def reports(self, _anchors: Mapping[str, Anchor]) -> tuple[Outcome, ...]:
             self.calls += 1
             return (Outcome(Action("touch", ("hand1", "case"))),) if self.calls == 6 else ()
 
@@ -121,6 +121,23 @@ def gearbox_loop(body: Body, gearbox: Path, people: People, **options: object) -
         people=people,
         **options,
     )
+
+
+@pytest.mark.parametrize("closed", [True, False])
+def test_what_the_fingers_hold_after_a_grasp_that_was_broken_off_is_held(
+    gearbox: Path, *, closed: bool
+):
+    class Closing(Falling):
+        def recover(self) -> None:
+            super().recover()
+            if closed:  # the arm was stopped after its fingers had closed on the part
+                self.held, self.hand = "hubcover", PLACES["hubcover"]
+
+    body = Closing(dies_at=6)
+    result = gearbox_loop(body, gearbox, People(operator=lambda _reason: True)).run()
+    assert result.achieved, result.reason
+    assert body.started.count(str(PICK)) == (1 if closed else 2)
+    assert body.started.count(str(INSERT)) == 1
 
 
 @pytest.mark.parametrize("times", [1, 2])

@@ -12,11 +12,20 @@ from aapa import Anchoring, AnchorStatus
 from icarus_lite import Agent, load_domain
 from icarus_lite.errors import TraceError
 from icarus_lite.trace import Recording, TraceWriter, header, replay
+from runtime.cell import Cell
 from runtime.errors import UsageError
 from runtime.loop import Loop, TakenUp
-from runtime.resuming import CUT_OFF, read_cut_off, read_world, task_of, world_path
+from runtime.resuming import (
+    CUT_OFF,
+    read_cut_off,
+    read_world,
+    task_of,
+    world_keeper,
+    world_path,
+)
 from runtime.run import anchoring_parameters
 from runtime.second_look import LoopLimits
+from runtime.workplace import Workplace
 
 GOAL = "(attached hubcover case)"
 
@@ -148,3 +157,25 @@ def test_a_cell_that_was_not_kept_is_told(tmp_path: Path, content: str | None):
         world_path(trace).write_text(content, encoding="utf-8")
     with pytest.raises(UsageError, match=r"run\.cell\.json"):
         read_world(trace)
+
+
+def test_the_cell_is_written_down_before_the_first_cycle_is(tmp_path: Path):
+    trace = tmp_path / "new" / "run.jsonl"
+    with Cell("ur5", 2) as cell:
+        place = Workplace(Body(), None, cell, "a cell")  # type: ignore[arg-type]
+        world_keeper(place, trace)
+        assert read_world(trace) == json.loads(json.dumps(cell.snapshot()))
+
+
+def test_where_the_hand_of_a_person_was_is_forgotten(gearbox: Path, tmp_path: Path):
+    path = tmp_path / "run.jsonl"
+    record(path, gearbox, 9)
+    rows = lines(path)
+    anchors = rows[-1]["anchors"]
+    assert isinstance(anchors, list)
+    anchors.append({**anchors[0], "name": "person", "type": "person", "status": "occluded"})
+    path.write_text("".join(f"{json.dumps(row)}\n" for row in rows), encoding="utf-8")
+    found = read_cut_off(path, load_domain(gearbox), "1.1", "ur5")
+    names = {anchor.name for anchor in found.anchoring.anchors}
+    assert "person" not in names
+    assert names == {anchor["name"] for anchor in anchors} - {"person"}

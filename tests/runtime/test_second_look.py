@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Container, Iterable
+
 import pytest
 from scripted_assembly import Body
 
@@ -17,11 +19,22 @@ def body() -> Body:
     return Body()
 
 
-def looking(body: Body, times_s: list[float]) -> SecondLook:
+def looking(body: Body, times_s: Iterable[float], *, achieved: bool = True) -> SecondLook:
     look = SecondLook(body, LIMITS, begun=True)
     for now_s in times_s:
-        look.count(now_s)
+        look.count(now_s, achieved=achieved, unsettled=False)
     return look
+
+
+def confirmed_after(
+    look: SecondLook, company: Container[int] = (), *, doubtful: bool = False
+) -> int | None:
+    """Give the time at which a goal counts, one look a second; None if it never does."""
+    for second in range(60):
+        look.count(float(second), achieved=True, unsettled=second in company)
+        if look.confirmed(float(second), doubtful=doubtful):
+            return second
+    return None
 
 
 def test_an_arm_goes_back_once_and_is_there_when_it_says_so(body: Body) -> None:
@@ -75,28 +88,58 @@ def test_the_way_back_is_broken_off_for_something_to_do(body: Body) -> None:
 def test_a_goal_is_confirmed_by_enough_looks_over_enough_time(
     body: Body, times_s: list[float], *, confirmed: bool
 ) -> None:
-    assert looking(body, times_s).confirmed(times_s[-1], company=False) is confirmed
+    assert looking(body, times_s).confirmed(times_s[-1], doubtful=False) is confirmed
 
 
-def test_in_company_a_look_takes_longer_but_not_for_ever(body: Body) -> None:
-    look = looking(body, [0, 1, 2, 3])
-    assert not look.confirmed(11.9, company=True)
-    assert look.confirmed(12.0, company=True)
+def test_a_look_begins_anew_once_the_hand_of_a_person_is_gone(body: Body) -> None:
+    assert confirmed_after(looking(body, ())) == 3
+    assert confirmed_after(looking(body, ()), company={1, 2}) == 5  # with the last that saw it
+
+
+def test_a_hand_that_stays_does_not_hold_it_up_for_ever(body: Body) -> None:
+    assert confirmed_after(looking(body, ()), company=range(60)) == 12
+
+
+def test_what_may_have_been_taken_is_waited_for_as_long_as_in_an_impasse(body: Body) -> None:
+    assert confirmed_after(looking(body, ()), doubtful=True) == 8
+    assert confirmed_after(looking(body, ()), company={5}, doubtful=True) == 13
 
 
 def test_counting_begins_anew_when_something_else_is_believed(body: Body) -> None:
     look = looking(body, [0, 1, 2, 3])
     look.interrupt()
-    look.count(4)
-    assert not look.confirmed(4, company=False)
+    look.count(4, achieved=True, unsettled=False)
+    assert not look.confirmed(4, doubtful=False)
     assert not look.in_vain(4)
 
 
+def test_an_impasse_is_looked_at_anew_and_so_is_a_goal_believed_again(body: Body) -> None:
+    look = looking(body, range(30))
+    for second in range(30, 38):
+        look.count(second, achieved=False, unsettled=False)
+        assert not look.in_vain(second)
+    look.count(38, achieved=False, unsettled=False)
+    assert look.in_vain(38)
+    look.count(39, achieved=True, unsettled=False)
+    assert not look.confirmed(39, doubtful=False)
+
+
+def test_a_visit_is_remembered_until_the_arm_does_something(body: Body) -> None:
+    look = looking(body, [0])
+    assert not look.visited
+    look.notice(company=True)
+    look.notice(company=False)
+    look.interrupt()
+    assert look.visited
+    look.break_off()
+    assert not look.visited
+
+
 def test_it_is_in_vain_after_enough_looks_over_enough_time(body: Body) -> None:
-    look = looking(body, [0, 1, 2])
+    look = looking(body, [0, 1, 2], achieved=False)
     assert not look.in_vain(7.9)
     assert look.in_vain(8.0)
-    assert not looking(body, [0, 9]).in_vain(9)
+    assert not looking(body, [0, 9], achieved=False).in_vain(9)
 
 
 def test_a_lost_arm_has_to_go_back_again(body: Body) -> None:

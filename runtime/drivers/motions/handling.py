@@ -8,11 +8,15 @@ from typing import Final
 from runtime.drivers.limits import MotionError
 from runtime.drivers.motions.places import Held, Place, add, is_round
 from runtime.drivers.motions.planner import Planner
+from runtime.drivers.motions.threads import holds_in_thread
 from runtime.drivers.spots import free_spots
+from runtime.drivers.steps import GiveUp, Look
 
 _SPOTS: Final = 10  # free spots tried before giving up
 _LEAST_PLAY: Final = 0.004  # m that the open fingers leave around a part
-_DROP_M: Final = 0.0015  # by which a part falls when it is put down: the table is not pressed
+_OFF_M: Final = 0.0015  # lifted so far, a part is off its seat
+_PUT_DOWN_N: Final = 4.0  # with which a part must stand on the table before it is let go
+_STANDS_M: Final = 0.005  # as far above where it should stand: a part may hang lower in the hand
 
 
 def grasp(planner: Planner, hand: str, obj: str) -> None:
@@ -36,41 +40,81 @@ def grasp(planner: Planner, hand: str, obj: str) -> None:
 
 
 def take_out(planner: Planner, hand: str, obj: str, _into: str) -> None:
-    """Take hold of a part and lift it out of what it sits in."""
+    """Take hold of a part and lift it off its seat in another one."""
     grasp(planner, hand, obj)
-    planner.lift()
+    come_off(planner)
+
+
+def come_off(planner: Planner) -> None:
+    """Lift a part a little, so that it is seen to come along.
+
+    No higher: what the hand holds is anchored to it when the action has ended, at the place where
+    it was seen last.
+    """
+    planner.shift(planner.height + _OFF_M, "lift it off its seat")
 
 
 def place(planner: Planner, hand: str, obj: str) -> None:
-    """Put the held part down at the nearest free spot of the put-down area."""
+    """Put the held part down at the nearest free spot of the put-down area.
+
+    The last of the way it goes down by force, until it stands: what it meets sooner, or whatever
+    it hangs below the fingers, is never pressed harder than that.
+    """
+    if give_up(planner) or look_again(planner):
+        return
     held = planner.places.held(hand, obj, gripped=planner.gripped)
     planner.hangs_m = held.hangs_m
     planner.lift()
     here = (float(planner.tcp[0, 3]), float(planner.tcp[1, 3]))
     places = planner.places
     spots = free_spots(held.part, here, places.others(hand, obj), planner.config, places.parts)
-    height = planner.config.workspace.table_z_m + held.part.size[2] / 2 + _DROP_M
+    height = planner.config.workspace.table_z_m + held.part.size[2] / 2
     now = planner.turned_rad
     refusal = MotionError(f"there is no free spot to put {obj} down")
     for x, y in itertools.islice(spots, _SPOTS):
         centre = (x, y, height)
         try:
-            planner.reach(
+            target, joints = planner.reach(
                 lambda turn, centre=centre: add(centre, held.turned(turn - now)),  # type: ignore[misc]
                 f"put {obj} down",
+                above_m=planner.config.heights.approach_m,
                 turnable=is_round(held.part),
             )
         except MotionError as error:
             refusal = error
         else:
+            planner.press(target, joints, press_n=_PUT_DOWN_N, tolerance_m=_STANDS_M)
             release(planner, hand, obj, centre, held)
             return
     raise refusal
 
 
 def rest(planner: Planner, _hand: str) -> None:
-    """Go to the look pose."""
+    """Go to the look pose; what stands in its thread is let go."""
+    if holds_in_thread(planner):
+        planner.grip(close=False)
     planner.rest()
+
+
+def give_up(planner: Planner) -> bool:
+    """Come away from where pressing has failed, the part still in the hand."""
+    failure = planner.progress.failure
+    if failure:
+        planner.lift()
+        planner.steps.append(GiveUp(failure))
+    return bool(failure)
+
+
+def look_again(planner: Planner) -> bool:
+    """Look first where the hand feels nothing of what it is said to hold.
+
+    It has been lost, and may be seen: the command then fails once, not until that is believed.
+    """
+    lost = not (planner.gripped or planner.progress.looked)
+    if lost:
+        planner.rest()
+        planner.steps.append(Look(planner.config.look_cycles, planner.remaining))
+    return lost
 
 
 def release(planner: Planner, hand: str, obj: str, centre: Place, held: Held) -> None:

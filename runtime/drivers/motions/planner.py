@@ -22,7 +22,7 @@ from runtime.drivers.limits import (
     tcp_matrix,
 )
 from runtime.drivers.motions.places import Place, Places
-from runtime.drivers.steps import Grip, MoveJoints, MoveLinear, Progress, Step, Tare
+from runtime.drivers.steps import Grip, MoveJoints, MoveLinear, Press, Progress, Step, Tare
 from runtime.kinematics import Joints, Matrix, matrix_to_pose, pose_to_matrix
 from runtime.parts import PartModel
 
@@ -160,6 +160,32 @@ class Planner:
                 self._move_linear(stop, path[-1], guarded=True)
                 return down, rest[-1]
         raise refusal
+
+    def press(
+        self,
+        target: Matrix,
+        joints: Joints,
+        *,
+        press_n: float,
+        tolerance_m: float,
+        search_m: float = 0.0,
+        spiral_m: float = 0.0,
+    ) -> None:
+        """Go down by force to a target straight below, (4, 4), and be there; see `Press`."""
+        self.steps.append(
+            Press(
+                matrix_to_pose(target),
+                joints,
+                self.joints,
+                math.dist(target[:3, 3].tolist(), self.tcp[:3, 3].tolist()),
+                press_n,
+                search_m,
+                spiral_m,
+                tolerance_m,
+                self.remaining,
+            )
+        )
+        self.joints, self.tcp = joints, target
 
     def grip(self, *, close: bool, part: PartModel | None = None, again: bool = False) -> None:
         """Close the gripper on a part, or open it, perhaps to take hold again."""

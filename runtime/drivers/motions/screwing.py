@@ -11,15 +11,15 @@ import math
 from typing import Final
 
 from runtime.drivers.limits import MotionError
-from runtime.drivers.motions.handling import grasp, release
+from runtime.drivers.motions.handling import come_off, give_up, grasp, look_again, release
 from runtime.drivers.motions.planner import Planner
 from runtime.drivers.motions.seating import (
     find_seat,
-    give_up,
     look_first,
     over_seat,
     press,
 )
+from runtime.drivers.motions.threads import holds_in_thread
 from runtime.drivers.steps import GiveUp, Grip, Tare, Turn
 from runtime.kinematics import Joints
 from runtime.parts import PartModel, ScrewThread, Seat
@@ -37,7 +37,18 @@ _LOOSEN: Final = 1.5  # what is tight takes more torque to be loosened
 
 
 def screw_in(planner: Planner, hand: str, obj: str, into: str) -> None:
-    """Screw the held part into another one until it is tight."""
+    """Screw the held part into another one until it is tight.
+
+    A part that stands in its thread already is let go: how far it is in is not known, so it has to
+    be unscrewed first.
+    """
+    if look_again(planner):
+        return
+    if planner.progress.turned_rad is None and holds_in_thread(planner):
+        planner.grip(close=False)
+        planner.lift()
+        planner.steps.append(GiveUp(f"{obj} stands in its thread already; it was let go there"))
+        return
     seating = find_seat(planner, hand, obj, into)
     part, thread = seating.held.part, _thread(seating.seat, obj, into)
     if planner.progress.turned_rad is not None:
@@ -60,7 +71,7 @@ def screw_in(planner: Planner, hand: str, obj: str, into: str) -> None:
 
 
 def unscrew(planner: Planner, hand: str, obj: str, into: str) -> None:
-    """Take hold of a part that is screwed into another one, screw it out and lift it."""
+    """Take hold of a part that is screwed into another one, and screw it out."""
     progress, places = planner.progress, planner.places
     part, receiver = places.part(obj), places.part(into)
     seat = next((seat for seat in part.seats if seat.into == receiver.type), None)
@@ -81,11 +92,15 @@ def unscrew(planner: Planner, hand: str, obj: str, into: str) -> None:
             _regrip(planner, part, clockwise=False, left_rad=left)
     if failure:
         planner.grip(close=False)
+        planner.lift()
+        planner.steps.append(GiveUp(failure))
     elif left > _BACK and not progress.stalled:
         _turn(planner, thread, clockwise=False, angle_rad=left, most_rad=left)
-    planner.lift()
-    if failure:
-        planner.steps.append(GiveUp(failure))
+    else:
+        assert seat is not None, "it has a thread"
+        top_m = places.position(into)[2] + seat.offset[2] + thread.depth_m
+        _hold_at(planner, part, top_m + part.grasp_height_m)
+        come_off(planner)
 
 
 def _go_on(planner: Planner, thread: ScrewThread, part: PartModel, turned: float) -> None:
@@ -162,6 +177,15 @@ def _regrip(planner: Planner, part: PartModel, *, clockwise: bool, left_rad: flo
     planner.turn_joints(back, "turn the wrist back")
     planner.steps.append(Tare())
     planner.shift(low, "come down to take hold again", guarded=True)
+    planner.grip(close=True, part=part)
+
+
+def _hold_at(planner: Planner, part: PartModel, height: float) -> None:
+    """Take hold again where the part's place is known: before, its thread hid how deep it was."""
+    planner.grip(close=False, again=True)
+    planner.hangs_m = 0.0
+    planner.steps.append(Tare())
+    planner.shift(height, "take hold of it as it stands on its thread", guarded=True)
     planner.grip(close=True, part=part)
 
 

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
 from runtime.drivers.limits import MotionError
-from runtime.drivers.motions.handling import release
+from runtime.drivers.motions.handling import give_up, look_again, release
 from runtime.drivers.motions.places import Held, Place, add, is_round
 from runtime.drivers.motions.planner import Planner
-from runtime.drivers.steps import GiveUp, Look, Press
-from runtime.kinematics import Joints, Matrix, matrix_to_pose
+from runtime.drivers.steps import Look
+from runtime.kinematics import Joints, Matrix
 from runtime.parts import Seat
 
 _ABOVE_RIM_M: Final = 0.008
@@ -40,7 +39,7 @@ class Seating:
 
 def insert(planner: Planner, hand: str, obj: str, into: str) -> None:
     """Seat the held part in another one, by force."""
-    if give_up(planner):
+    if give_up(planner) or look_again(planner):
         return
     seating = find_seat(planner, hand, obj, into)
     if seating.seat.thread is not None:
@@ -52,15 +51,6 @@ def insert(planner: Planner, hand: str, obj: str, into: str) -> None:
     tolerance = planner.config.force.seat_tolerance_m
     press(planner, seating.seat, target, joints, seating.seat.press_n, tolerance)
     release(planner, hand, obj, seating.centre, seating.held)
-
-
-def give_up(planner: Planner) -> bool:
-    """Come away from where pressing has failed, the part still in the hand."""
-    failure = planner.progress.failure
-    if failure:
-        planner.lift()
-        planner.steps.append(GiveUp(failure))
-    return bool(failure)
 
 
 def find_seat(planner: Planner, hand: str, obj: str, into: str) -> Seating:
@@ -135,20 +125,14 @@ def press(
             f"it takes {press_n:g} N to seat it; the configuration allows {force.most_n:g} N "
             "(force.most_n), and that with some margin"
         )
-    planner.steps.append(
-        Press(
-            matrix_to_pose(target),
-            joints,
-            planner.joints,
-            math.dist(target[:3, 3].tolist(), planner.tcp[:3, 3].tolist()),
-            press_n,
-            force.search_radius_m,
-            min(_WIDEST_SPIRAL_M, max(_CLOSEST_SPIRAL_M, _FORGIVES * _mouth_m(seat))),
-            tolerance_m,
-            planner.remaining,
-        )
+    planner.press(
+        target,
+        joints,
+        press_n=press_n,
+        tolerance_m=tolerance_m,
+        search_m=force.search_radius_m,
+        spiral_m=min(_WIDEST_SPIRAL_M, max(_CLOSEST_SPIRAL_M, _FORGIVES * _mouth_m(seat))),
     )
-    planner.joints, planner.tcp = joints, target
 
 
 def _mouth_m(seat: Seat) -> float:

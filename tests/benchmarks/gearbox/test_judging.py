@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import pytest
 from gearbox.endings import ending
 from gearbox.faults import WITHOUT_ATTACHMENTS, true_reasons
-from gearbox.judging import Judge, identities, is_done, kind_of
+from gearbox.judging import Judge, identities, is_done, kind_of, taken_away
 from gearbox.rows import Ending
 from gearbox.trials import TASKS, Trial
 
@@ -35,7 +35,9 @@ class Truth:
         }
     )
     held: str | None = None
-    person: SimpleNamespace = field(default_factory=lambda: SimpleNamespace(doing=None, holds=None))
+    person: SimpleNamespace = field(
+        default_factory=lambda: SimpleNamespace(doing=None, holds=None, carries=None)
+    )
     seated: dict[str, str] = field(default_factory=dict)
 
 
@@ -270,3 +272,59 @@ def test_without_attachments_a_lost_part_is_a_true_reason():
     asked = {"achieved": False, "true": False, "troubled": False, "reason": reason}
     assert ending(**asked, reasons=()) is Ending.MISNAMED
     assert ending(**asked, reasons=WITHOUT_ATTACHMENTS) is Ending.FAILED
+
+
+NOT_SEEN = (
+    "(in-reachable-pose ?hand ?obj) needs (object hubcover ^x 0.4 ^y 0.1 ^z 0.03 ^seen yes)",
+    "(attached hubcover case) speaks of hubcover, which is not perceived",
+    "no plan; hubcover is no longer anchored since cycle 9, after 23 cycles without a sign",
+)
+
+
+@pytest.mark.parametrize("reason", NOT_SEEN)
+def test_a_part_that_is_not_seen_is_a_true_reason_only_while_the_person_has_it(reason):
+    truth, task = Truth(), TASKS["1.1"]
+    asked = {"achieved": False, "true": False, "troubled": True, "reason": reason}
+    for fault, expected in (
+        ("taken", Ending.FAILED),
+        ("taken_silently", Ending.FAILED),
+        ("kept", Ending.FAILED),
+        ("moved", Ending.MISNAMED),
+        ("reaches_in", Ending.MISNAMED),
+    ):
+        trial = Trial("1.1", 0, fault=fault)
+        truth.person.carries = "hubcover-1"
+        assert taken_away(task, truth) == {"hubcover"}
+        reasons = true_reasons(trial, taken_away(task, truth))
+        assert ending(**asked, reasons=reasons) is expected
+        truth.person.carries = None  # it is back on the table, where it can be seen
+        assert taken_away(task, truth) == set()
+        reasons = true_reasons(trial, taken_away(task, truth))
+        assert ending(**asked, reasons=reasons) is Ending.MISNAMED
+
+
+def test_it_has_to_be_the_part_that_was_taken():
+    reasons = true_reasons(Trial("2.2", 0, fault="kept"), {"output"})
+    asked = {"achieved": False, "true": False, "troubled": True}
+    other = "(in-place input case) speaks of input, which is not perceived"
+    assert ending(**asked, reason=other, reasons=reasons) is Ending.MISNAMED
+    own = "(attached output case) speaks of output, which is not perceived"
+    assert ending(**asked, reason=own, reasons=reasons) is Ending.FAILED
+
+
+def test_what_lies_on_the_persons_own_side_is_away():
+    truth = Truth()
+    truth.parts["hubcover-1"] = Part("hubcover-1", (0.98, -0.36, 0.01))
+    truth.parts["bearing-1"] = Part("bearing-1", (0.98, -0.2, 0.01))  # not asked for
+    assert taken_away(TASKS["1.1"], truth) == {"hubcover"}
+    run = Run(truth)
+    assert run.cycle().away == ("hubcover",)
+
+
+def test_a_hand_that_goes_slowly_has_moved_a_part_too():
+    run = Run(Truth())
+    run.cycle()
+    for step in range(1, 6):
+        run.truth.parts["bearing-2"] = Part("bearing-2", (0.5 + 0.01 * step, 0.2, 0.01))
+        verdict = run.cycle(anchors=())
+    assert verdict.events == ("moved by hand: bearing-2",)

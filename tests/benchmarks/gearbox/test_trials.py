@@ -4,12 +4,13 @@ import math
 import random
 
 import pytest
+from gearbox.endings import is_true_reason
 from gearbox.faults import KINDS, applies, plan_of, signs_of, true_reasons
 from gearbox.plans import free_place
 from gearbox.trials import NO_FAULT, TASKS, Trial, trials
 
 from icarus_lite import load_domain
-from runtime.cell.layout import random_layout
+from runtime.cell.layout import LayoutParameters, random_layout
 from runtime.controller.faults import parse_faults
 from runtime.parts import load_parts
 
@@ -51,8 +52,9 @@ def test_a_person_refuses_only_where_one_is_asked():
 
 
 def test_only_signs_of_its_own_fault_tell_that_it_struck():
-    seen = ["person: take-away", "slipped: plug-1", "killed"]
-    assert signs_of(Trial("1.4", 0, fault="taken"), seen) == ("person: take-away",)
+    seen = ["person: take-away", "moved by hand: input-1", "slipped: plug-1", "killed"]
+    assert signs_of(Trial("1.4", 0, fault="taken"), seen) == ()  # on the way, or another part
+    assert signs_of(Trial("1.2", 0, fault="taken"), seen) == ("moved by hand: input-1",)
     assert signs_of(Trial("1.4", 0, fault="slip"), seen) == ("slipped: plug-1",)
     assert signs_of(Trial("1.4", 0), seen) == ()
 
@@ -74,8 +76,35 @@ def test_tasks_are_those_of_the_domain(repository):
         assert (task.robot or "ur5") == TASKS[task.name].robot
 
 
-def test_the_person_puts_parts_where_nothing_stands():
+@pytest.mark.parametrize("kind", ["plug", "casingtop"])
+def test_the_person_puts_parts_where_nothing_stands_and_the_camera_sees_them(kind):
+    size = load_parts()[kind].size
     for seed in range(10):
-        x, y = free_place(random.Random(seed), seed)
+        x, y = free_place(random.Random(seed), seed, kind)
         for part in random_layout(load_parts(), seed).parts:
-            assert math.dist((x, y), part.position[:2]) > 0.1
+            if part.model.type == kind:
+                continue
+            beside = abs(x - part.position[0]) - (size[0] + part.model.size[0]) / 2
+            behind = abs(y - part.position[1]) - (size[1] + part.model.size[1]) / 2
+            assert max(beside, behind) > 0.015  # a finger's breadth
+        seen = LayoutParameters()
+        assert seen.x_m[0] <= x - size[0] / 2
+        assert x + size[0] / 2 <= seen.x_m[1]
+        assert seen.y_m[0] <= y - size[1] / 2
+        assert y + size[1] / 2 <= seen.y_m[1]
+        assert seen.reach_m[0] <= math.hypot(x, y) <= seen.reach_m[1]
+
+
+def test_what_the_driver_says_after_a_silence_is_true_of_a_stall_and_of_no_stopped_program():
+    said = (
+        "nothing passed between this program and the controller at 127.0.0.2 for 1.42 s, and the "
+        "controller's watchdog ended the control program; see that the controller is on"
+    )
+    stopped = "the control program on the controller at 127.0.0.2 was stopped; see that nobody else"
+    for fault, reason, expected in (
+        ("stall", said, True),
+        ("stall", stopped, False),
+        ("kill_script", said, False),
+        ("kill_script", stopped, True),
+    ):
+        assert is_true_reason(reason, true_reasons(Trial("1.1", 0, fault=fault))) is expected

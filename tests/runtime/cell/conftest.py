@@ -115,14 +115,14 @@ class Bench:
         self.closed = False
         self.move()
 
-    def move(self, x=None, y=None, z=None, yaw=None, force_n=0.0):
+    def move(self, x=None, y=None, z=None, yaw=None, force_n=0.0, spun_rad=0.0):
         """Bring the tool somewhere, pointing down; what is not given stays."""
         self.place = [b if a is None else a for a, b in zip((x, y, z), self.place, strict=True)]
         self.yaw = self.yaw if yaw is None else yaw
         c, s = np.cos(self.yaw), np.sin(self.yaw)
         tool = at(*self.place)
         tool[:3, :3] = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]) @ np.diag([1.0, -1.0, -1.0])
-        return self.world.step(tool, closed=self.closed, force_n=force_n)
+        return self.world.step(tool, closed=self.closed, force_n=force_n, spun_rad=spun_rad)
 
     def close(self):
         self.closed = True

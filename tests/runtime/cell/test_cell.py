@@ -227,3 +227,20 @@ def test_it_closes_like_a_file():
     with Cell("ur5") as cell:
         assert cell.look()[0]
     cell.close()
+
+
+def test_a_wrist_that_turns_far_between_two_looks_screws_as_far(cell, over):
+    plug, case = cell.truth.parts["plug-1"], cell.truth.parts["case-1"]
+    grasp, seat = plug.model.grasp_height_m, plug.model.seats[0]
+    on_plug = over(cell, plug.position, grasp)
+    cell.update(on_plug, gripper_closed=False)
+    assert cell.update(on_plug, gripper_closed=True)
+    top = np.add(np.add(case.position, seat.offset), (0, 0, seat.thread.depth_m + grasp))
+    *arm, wrist = over(cell, top, -3e-4)
+    wrist = math.remainder(wrist, 2 * math.pi) - 2 * math.pi  # wound back, as for a screw
+    cell.update((*arm, wrist), gripper_closed=True, force_n=8.0)
+    sunk = seat.thread.pitch_m * 5.0 / (2 * math.pi)
+    *arm, _ = over(cell, top, -3e-4 - sunk)
+    cell.update((*arm, wrist + 5.0), gripper_closed=True, force_n=8.0)
+    cell.update((*arm, wrist + 5.0), gripper_closed=False)
+    assert cell.truth.parts["plug-1"].turned_rad == pytest.approx(5.0, abs=0.05)

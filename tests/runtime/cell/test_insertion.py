@@ -224,3 +224,14 @@ def test_a_part_that_slips_falls_where_it_was_and_is_no_longer_felt(new_bench):
     part = bench.world.parts["hubcover-1"]
     assert part.position[:2] == pytest.approx((0.4, 0.12))
     assert part.parent is not None or part.position[2] == pytest.approx(0.012)
+
+
+@pytest.mark.parametrize("spun", [3.6, 5.5, 8.0])
+def test_turns_are_counted_however_seldom_one_looks(bench, spun):
+    top = into_thread(bench)
+    thread = bench.world.parts["plug-1"].model.seats[0].thread
+    bench.yaw -= spun
+    bench.move(z=top - thread.pitch_m * spun / TURN - 2e-4, spun_rad=0.2 - spun)
+    assert bench.world._insertion.turning.turned_rad == pytest.approx(spun)
+    bench.open()
+    assert bench.world.parts["plug-1"].turned_rad == pytest.approx(spun)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from runtime.cell import PERFECT, Act, Cell, CellParameters, Person, PersonParameters, Report
+from runtime.cell.acts import Pointed
 from runtime.cell.body import REST
 from runtime.errors import UsageError
 
@@ -91,6 +92,22 @@ def test_how_often_one_looks_makes_no_difference(new_bench):
         assert bench.world.parts["plug-1"].position == pytest.approx((0.45, -0.05, 0.013))
         ends.append(seconds)
     assert ends[0] == pytest.approx(ends[1], abs=0.9)  # waiting is noticed at the next look
+
+
+def test_a_part_is_put_down_beside_what_stands_there_not_into_it(bench):
+    person = Person(bench.world, 4)
+    person.step(0.0)
+    bench.move(0.2, -0.3, 0.4)
+    x, y, _ = bench.world.parts["case-1"].position
+    edge = x - bench.world.parts["case-1"].model.size[0] / 2  # the wall's own place
+    person.ask("put-back", [("hubcover", None), (f"{edge - 0.01:.3f}", None), (f"{y}", None)])
+    assert wait(person)[0][0].status == "succeeded"
+    cover = bench.world.parts["hubcover-1"]
+    assert cover.position[2] == pytest.approx(cover.model.size[2] / 2)
+    assert edge - cover.position[0] >= cover.model.size[0] / 2
+    assert math.dist(cover.position[:2], (edge - 0.01, y)) < 0.08
+    assert bench.grip("hubcover-1")
+    assert bench.world.contact().press_n(*bench.place) < 20.0
 
 
 def test_the_same_seed_takes_the_same_time_to_begin(new_bench):
@@ -219,6 +236,36 @@ def test_held_until_something_was_pressed_in(someone, bench):
     assert someone.place == REST
 
 
+def test_asked_again_for_what_they_hold_they_say_so_and_hold_on(someone, bench):
+    ask(someone, bench, "hold", "case")
+    wait(someone)
+    someone.ask("hold", [("case", bench.world.parts["case-1"].position)])
+    reports, _ = wait(someone)
+    assert reports == (Report("hold", ("case",), "succeeded"),)
+    for tick in range(200):
+        assert someone.step(someone._now_s + 0.1 * (tick % 2)) == ()
+        assert someone.holds == "case-1"
+    someone.ask("take-away", [("plug", None)])  # something else: they let go
+    reports, _ = wait(someone)
+    assert reports[0].name == "take-away"
+    assert someone.holds is None
+
+
+def test_what_they_do_of_their_own_accord_waits_while_they_hold_for_somebody(bench):
+    bench.move(0.2, -0.3, 0.4)
+    script = (Act("reach-in", at_s=6.0),)
+    person = Person(bench.world, 0, PersonParameters(acts=script, delay_s=(0.0, 0.0)))
+    ask(person, bench, "hold", "case")
+    wait(person)
+    for _ in range(300):
+        person.step(person._now_s + 0.1)
+        assert person.holds == "case-1"
+    person.ask("release", [("case", None)])
+    told = [each.name for _ in range(300) for each in person.step(person._now_s + 0.1)]
+    assert sorted(told) == ["reach-in", "release"]
+    assert person.holds is None
+
+
 def test_they_let_go_when_they_are_told(someone, bench):
     ask(someone, bench, "hold", "case")
     wait(someone)
@@ -257,7 +304,10 @@ def test_the_script_is_followed_at_its_times_and_occasions(bench):
     assert wait(person, 1.5) == ((), pytest.approx(1.5))
     assert person.doing is None
     reports, _ = wait(person)
-    assert reports == (Report("take-away", ("bearing-2",), "succeeded", asked=False),)
+    pointed = (Pointed("bearing", (0.3, -0.2, 0.0095)),)  # where it was, not where it is now
+    assert reports == (
+        Report("take-away", ("bearing-2",), "succeeded", asked=False, pointed=pointed),
+    )
     assert bench.world.parts["bearing-2"].position[0] > 0.8
     bench.pick("hubcover-1")
     bench.move(0.2, -0.3, 0.4)

@@ -251,3 +251,36 @@ def test_wherever_the_hand_lets_go_parts_end_up_supported(places):
         assert part.position[2] >= 0.012 - 1e-9
         assert (part.parent is None) == (abs(part.position[2] - 0.012) < 1e-9)
         assert math.hypot(part.position[0] - x, part.position[1] - y) <= 0.008
+
+
+def test_closing_fingers_push_a_part_to_their_middle_over_the_table(bench):
+    x, y, z = bench.world.parts["input-1"].position
+    grasp = bench.world.parts["input-1"].model.grasp_height_m
+    bench.move(x, y + 0.008, z + grasp)
+    assert bench.close()
+    assert bench.world.parts["input-1"].position == pytest.approx((x, y + 0.008, z))
+
+
+def test_closing_fingers_push_a_part_through_no_wall_of_its_seat(bench):
+    bench.pick("input-1")
+    bench.push_in("input-1", "case-1")
+    assert bench.world.parts["input-1"].seated
+    x, y, z = bench.world.parts["input-1"].position
+    grasp = bench.world.parts["input-1"].model.grasp_height_m
+    bench.move(x, y + 0.008, z + grasp)
+    assert bench.close()
+    moved = bench.world.parts["input-1"].position
+    assert moved == pytest.approx((x, y, z), abs=1e-3)
+    assert bench.world.contact().press_n(*bench.place) < 20.0
+
+
+def test_closing_fingers_push_a_part_no_farther_than_to_its_neighbour(bench):
+    first, second = bench.world.parts["bearing-1"], bench.world.parts["bearing-2"]
+    x, y, z = first.position
+    bench.world.place("bearing-2", x, y - first.model.size[1] - 0.004)
+    bench.move(x, y - 0.01, z + first.model.grasp_height_m)
+    assert bench.close()
+    assert bench.world.held == "bearing-1"
+    gap = bench.world.parts["bearing-1"].position[1] - bench.world.parts["bearing-2"].position[1]
+    assert gap == pytest.approx(second.model.size[1], abs=6e-4)
+    assert bench.world.contact().press_n(*bench.place) < 20.0

@@ -108,7 +108,7 @@ def test_the_generated_code_on_request() -> None:
 def test_an_unknown_concept_is_told_with_what_was_meant() -> None:
     with pytest.raises(UsageError, match="has no concept called nera; did you mean near"):
         explain(GEARBOX, "nera")
-    with pytest.raises(UsageError, match="it has apart, carried, empty, fits, free, graspable"):
+    with pytest.raises(UsageError, match="it has apart, at-rest-empty, by-hand, carried, empty"):
         explain(GEARBOX, "xyz")
 
 

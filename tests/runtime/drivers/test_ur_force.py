@@ -318,3 +318,46 @@ def test_the_arm_stops_pressing_when_the_program_that_drives_it_is_killed(
         child.wait()
     await_that(lambda: stands_still(controller))
     await_that(lambda: controller.bench({"query": "state"})["program_state"] == "STOPPED")
+
+
+PLACE = Action("place", ("hand1", "hubcover"))
+
+
+@pytest.fixture
+def fresh(config, parts, await_that):
+    """A controller that has felt nothing yet, and a driver of its arm that holds a part."""
+    with (
+        ControllerProcess.start("ur5", clock=10.0, joints=config.look_joints) as controller,
+        UrDriver(controller.address, config, parts) as driver,
+    ):
+        grip(driver, controller, await_that)
+        yield controller, driver
+
+
+@pytest.mark.parametrize("stands_m", [0.0, 0.06], ids=["the table", "something unseen"])
+def test_what_a_part_is_put_down_on_is_never_pressed_hard(fresh, scene, parts, run, stands_m):
+    (controller, driver), cover = fresh, parts["hubcover"]
+    x, y, z = driver.state().tcp_pose[:3]
+
+    def held():
+        state = driver.state()
+        at = (*state.tcp_pose[:2], state.tcp_pose[2] - cover.grasp_height_m)
+        # All else stands elsewhere, so it is put down where the hand is.
+        return scene(**{"hand1": state.tcp_pose[:3], "hubcover": at, "plug-1": (0.6, 0.3, 0.013)})
+
+    def feel():
+        controller.set_tool_input(0, on=driver.state().gripper_closed)
+
+    height = stands_m + cover.size[2] / 2 + cover.grasp_height_m
+    controller.bench({"contact": surface((x, y), lambda _dx, _dy: height)})
+    driver.start(PLACE, (PLACE,), held())
+    outcome = run(driver, held, feel)
+    if stands_m:
+        assert outcome.status is Status.FAILED
+        assert re.search(r"in the way: it stands (59|60)\.\d mm above", outcome.reason)
+        assert driver.state().gripped
+        assert driver.state().tcp_pose[2] > z - 0.2
+    else:
+        assert outcome.status is Status.SUCCEEDED, outcome.reason
+        assert driver.state().tcp_pose[2] == pytest.approx(height, abs=1e-3)
+    assert controller.bench({"query": "journal"})["journal"]["force_n"] < 60.0

@@ -120,3 +120,36 @@ def test_a_crossed_thread_is_backed_out_and_the_next_try_succeeds(workbench):
     outcome = bench.carry_out("screw-in", "plug-1", "case-1")
     assert outcome.status is Status.SUCCEEDED, outcome.reason
     assert bench.cell.truth.seated == {"plug-1": "case-1"}
+
+
+def test_a_screw_broken_off_half_way_stays_in_its_thread_and_is_begun_anew(
+    workbench, controller, await_that
+):
+    bench = workbench()
+    assert bench.carry_out("grasp", "plug-1").status is Status.SUCCEEDED
+    action = Action("screw-in", ("hand1", "plug-1", "case-1"))
+    bench.driver.start(action, (action,), bench.anchors())
+
+    def half_in():
+        bench.feel()
+        bench.driver.poll(bench.anchors())
+        return bench.cell.snapshot()["world"]["parts"]["plug-1"]["turned_rad"] > 3.0
+
+    await_that(half_in, 60.0)
+    bench.driver.stop()
+    await_that(bench.driver._at_rest)
+
+    assert bench.carry_out("rest").status is Status.SUCCEEDED
+    assert bench.cell.truth.held is None
+    plug = bench.parts["plug-1"]
+    assert plug.parent == "case-1"
+    assert 2.5 < plug.turned_rad < TURNS * 6.3
+    left_at = plug.turned_rad
+
+    outcome = bench.carry_out("unscrew", "plug-1", "case-1")
+    assert outcome.status is Status.SUCCEEDED, (outcome.reason, left_at)
+    assert bench.cell.truth.held == "plug-1"
+    outcome = bench.carry_out("screw-in", "plug-1", "case-1")
+    assert outcome.status is Status.SUCCEEDED, outcome.reason
+    assert bench.cell.truth.seated == {"plug-1": "case-1"}
+    assert controller.bench({"query": "journal"})["journal"]["force_n"] < 150.0

@@ -201,11 +201,28 @@ def test_a_move_that_does_not_begin_is_given_up(config, move, monkeypatch):
     assert arm.done == ["move", "stop"]
 
 
-def test_a_move_that_does_not_end_is_stopped(config, move):
+def test_a_move_that_does_not_end_is_stopped(config, move, monkeypatch):
+    monkeypatch.setattr("runtime.drivers.ur_worker._NEWS_WITHIN_S", 0.0)
     arm = Arm(config, takes_s=100.0)
     assert "was not finished in time" in carry_out(config, arm, move)
     assert arm.done == ["move", "stop"]
     assert arm.clock < 3.0
+
+
+def test_a_clock_that_is_told_of_before_the_end_of_the_move_fails_nothing(config, move):
+    # The client has a stream for each, and on a fast clock one is soon a second behind.
+    arm = Arm(config, takes_s=1.0)
+    operation = arm.operation
+
+    def behind():
+        if arm.running and arm.clock > 0.8:
+            arm.clock = max(arm.clock, 5.0)
+            arm.until = 5.5
+        return operation()
+
+    arm.operation = behind
+    assert carry_out(config, arm, move) == ""
+    assert arm.done == ["move"]
 
 
 def test_a_move_that_begins_late_has_its_whole_time(config, move):

@@ -18,7 +18,7 @@ from runtime.drivers import (
     Turn,
     plan_motion,
 )
-from runtime.drivers.limits import tcp_matrix
+from runtime.drivers.limits import arm_solutions, tcp_matrix
 from runtime.drivers.steps import GiveUp, Progress
 
 SCREW = Action("screw-in", ("hand1", "plug-1", "case"))
@@ -150,7 +150,7 @@ def test_unscrewing_takes_hold_and_turns_the_other_way(config, parts, scene, arm
     anchors = scene()
     seat = np.add(anchors["case"].position, parts["plug"].seats[0].offset)
     steps = plan_motion((UNSCREW,), scene(**{"plug-1": tuple(seat)}), arm_at(), config, parts)
-    assert kinds(steps) == ["MoveJoints", "Tare", "MoveLinear", "Grip", "Turn", "MoveLinear"]
+    assert kinds(steps) == ["MoveJoints", "Tare", "MoveLinear", "Grip", "Turn"]
     turn = steps[4]
     assert not turn.clockwise
     assert turn.angle_rad > WHOLE
@@ -163,7 +163,7 @@ def test_unscrewing_takes_hold_and_turns_the_other_way(config, parts, scene, arm
         (Progress(turned_rad=-WHOLE - 0.6), "MoveLinear"),
         (Progress(turned_rad=-WHOLE, stalled=True), "MoveLinear"),
         (Progress(turned_rad=-1.0, stalled=True), "GiveUp"),
-        (Progress(turned_rad=-7.0), "MoveLinear"),
+        (Progress(turned_rad=-7.0), "Turn"),
     ],
 )
 def test_what_unscrewing_does_next(on_thread, progress, last):
@@ -172,10 +172,30 @@ def test_what_unscrewing_does_next(on_thread, progress, last):
     if last == "GiveUp":
         assert kinds(steps) == ["Grip", "MoveLinear", "GiveUp"]
         assert steps[-1].reason == "it does not come loose: stuck after 0.2 of 4 turns"
-    elif progress.turned_rad == -7.0:
-        assert any(isinstance(step, Turn) for step in steps)
-    else:
-        assert kinds(steps) == ["MoveLinear"]
+    elif last == "MoveLinear":
+        # It stands on its thread now, so how high is known: before, that could not be seen.
+        assert kinds(steps) == ["Grip", "Tare", "Grip", "MoveLinear"]
+        assert [step.close for step in steps[::2]] == [False, True]
+        assert steps[0].again
+        assert steps[-1].length_m == pytest.approx(0.0015)
+
+
+def test_a_plug_that_was_turned_out_is_held_where_it_is_known_to_stand(
+    config, parts, scene, arm_at
+):
+    anchors = scene()
+    seat = parts["plug"].seats[0]
+    x, y, z = np.add(anchors["case"].position, seat.offset)
+    right = z + seat.thread.depth_m + parts["plug"].grasp_height_m
+    target = np.diag([1.0, -1.0, -1.0, 1.0])
+    target[:3, 3] = x, y, right + 0.005
+    joints = arm_solutions(config, target, config.look_joints)[0]
+    state = arm_at(joints, closed=True, gripped=True)
+    out = Progress(turned_rad=-WHOLE - 0.6)
+    steps = plan_motion((UNSCREW,), anchors, state, config, parts, out)
+    assert kinds(steps) == ["Grip", "Tare", "MoveLinear", "Grip", "MoveLinear"]
+    assert steps[2].pose[2] == pytest.approx(right)
+    assert steps[2].guarded
 
 
 def test_only_what_has_a_thread_is_screwed(config, parts, scene, arm_at):
@@ -197,3 +217,33 @@ def test_only_what_has_a_thread_is_screwed(config, parts, scene, arm_at):
 def test_moves_and_grips_are_all_the_hand_does_to_take_hold_anew(on_thread):
     steps = on_thread(Progress(looked=True, turned_rad=7.0))
     assert all(isinstance(step, Grip | MoveLinear | MoveJoints | Tare | Turn) for step in steps)
+
+
+@pytest.mark.parametrize("command", [SCREW, Action("rest", ("hand1",))])
+def test_a_plug_that_stands_in_its_thread_is_let_go_not_pulled_out(
+    config, parts, scene, arm_at, command
+):
+    anchors = scene()
+    seat = parts["plug"].seats[0]
+    x, y, z = np.add(anchors["case"].position, seat.offset)
+    grasp = parts["plug"].grasp_height_m
+
+    def first(turned_m):
+        """Give the first step from where the hand holds the plug, turned in so far."""
+        height = z + seat.thread.depth_m - turned_m + grasp
+        target = np.diag([1.0, -1.0, -1.0, 1.0])
+        target[:3, 3] = x, y, height
+        joints = arm_solutions(config, target, config.look_joints)[0]
+        held = scene(**{"hand1": (x, y, height), "plug-1": (x, y, height - grasp)})
+        state = arm_at(joints, closed=True, gripped=True)
+        return plan_motion((command,), held, state, config, parts)
+
+    half_in = first(0.003)
+    assert kinds(half_in)[:2] == ["Grip", "MoveLinear"]
+    assert not half_in[0].close
+    assert not half_in[1].holding
+    if command is SCREW:
+        assert half_in[-1] == GiveUp("plug-1 stands in its thread already; it was let go there")
+    above = first(-0.003)
+    assert kinds(above)[0] == "MoveLinear"
+    assert above[0].holding
