@@ -6,6 +6,7 @@ from aapa.alignment import Alignment, align
 from aapa.anchoring import Anchoring, AnchoringState, step
 from aapa.anchors import Anchor, AnchorStatus, Attachment
 from aapa.camera import Camera
+from aapa.columns import AnchorColumns, DetectionColumns
 from aapa.costs import Cost, Place
 from aapa.detections import Box, Detection, Position
 from aapa.errors import AnchoringError, RecordingError
@@ -14,6 +15,7 @@ from aapa.parameters import AnchoringParameters
 __all__ = [
     "Alignment",
     "Anchor",
+    "AnchorColumns",
     "AnchorStatus",
     "Anchoring",
     "AnchoringError",
@@ -24,6 +26,7 @@ __all__ = [
     "Camera",
     "Cost",
     "Detection",
+    "DetectionColumns",
     "Place",
     "Position",
     "RecordingError",

@@ -6,24 +6,26 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from operator import attrgetter
 
-from aapa.alignment import align, squared_distance
+import numpy as np
+
 from aapa.anchors import Anchor
 from aapa.camera import Camera
-from aapa.costs import CENTRE
-from aapa.crowds import align_crowd, are_many
-from aapa.detections import Box, Detection
+from aapa.columns import AnchorColumns, DetectionColumns
+from aapa.columns.cycle import CrowdState, columns_of_anchors, sighted, suits
+from aapa.columns.detections import columns_of
+from aapa.crowds import are_many
+from aapa.detections import Detection
 from aapa.hierarchy import parents_of
 from aapa.hypotheses import Move, explain, move_between
 from aapa.names import NameRegister
 from aapa.parameters import AnchoringParameters
 from aapa.reuniting import reunited
 from aapa.sightings import Sightings
-from aapa.singles import Aligned, align_singles
 from aapa.validation import check_camera, checked_detections
 from aapa.view import View
+from aapa.who import who_is_who
 
 _by_name = attrgetter("name")
-_in_image = attrgetter("type", "box", "score")
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,12 +37,14 @@ class AnchoringState:
         dropped: The anchors given up in the last step, sorted by name, each with the reason.
         register: The names given so far.
         frame: How many steps there have been.
+        columns: The same anchors as columns, where the last step went by them.
     """
 
     anchors: tuple[Anchor, ...] = ()
     dropped: tuple[Anchor, ...] = ()
     register: NameRegister = field(default_factory=NameRegister)
     frame: int = 0
+    columns: AnchorColumns | None = field(default=None, repr=False, compare=False)
 
     @classmethod
     def of(cls, anchors: Iterable[Anchor], frame: int) -> AnchoringState:
@@ -64,7 +68,20 @@ class Anchoring:
 
     def __init__(self, parameters: AnchoringParameters | None = None) -> None:
         self.parameters = parameters or AnchoringParameters()
-        self.state = AnchoringState()
+        self._state = AnchoringState()
+        self._crowd: CrowdState | None = None
+        """What came after the state, where no anchor has been asked for as yet."""
+
+    @property
+    def state(self) -> AnchoringState:
+        """All that is remembered; may be set to go on from another one."""
+        if self._crowd is not None:
+            self._state, self._crowd = _state_of(self._crowd), None
+        return self._state
+
+    @state.setter
+    def state(self, state: AnchoringState) -> None:
+        self._state, self._crowd = state, None
 
     @property
     def anchors(self) -> tuple[Anchor, ...]:
@@ -79,7 +96,7 @@ class Anchoring:
     @property
     def frame(self) -> int:
         """How many updates there have been."""
-        return self.state.frame
+        return self._state.frame if self._crowd is None else self._crowd.frame
 
     def update(
         self,
@@ -104,9 +121,57 @@ class Anchoring:
             AnchoringError: A detection, an attachment or the camera is malformed. The state
                 stays as it was.
         """
-        self.state = step(self.state, detections, attachments, camera, self.parameters)
+        state = self._state if self._crowd is None else self.state
+        state = step(state, detections, attachments, camera, self.parameters)
+        self._state, self._crowd = state, None
         least = self.parameters.min_report_confidence
-        return tuple([anchor for anchor in self.state.anchors if anchor.confidence >= least])
+        return tuple([anchor for anchor in state.anchors if anchor.confidence >= least])
+
+    def update_columns(
+        self,
+        detections: DetectionColumns,
+        attachments: Iterable[tuple[str, str]] = (),
+        camera: Camera | None = None,
+    ) -> AnchorColumns:
+        """Take in one frame of arrays, and give arrays: `update` for hundreds of objects.
+
+        The anchors are the same, but none is made before it is read. Both calls may be mixed.
+
+        Args:
+            detections: What the detector reports, in any order.
+            attachments: As `update` takes them.
+            camera: As `update` takes it.
+
+        Returns:
+            The anchors of at least the least reported confidence, sorted by name.
+
+        Raises:
+            AnchoringError: As in `update`; the state stays as it was.
+
+        Example:
+            >>> found = DetectionColumns("cone", [[10, 10, 30, 40], [50, 10, 70, 40]])
+            >>> cones = Anchoring().update_columns(found)
+            >>> cones.boxes.shape, cones[1].name
+            ((2, 4), 'cone-2')
+        """
+        known: CrowdState | AnchoringState = self._crowd or self._state
+        result: CrowdState | AnchoringState | None = None
+        if are_many(known.anchors, detections) and suits(self.parameters, known.register):
+            old = _columns_of(known)
+            if old is not None and detections.are_sound:
+                frame = _frame_after(known, attachments, camera, self.parameters)
+                result = _step_of_crowd(old, detections, known.register, frame)
+        if result is None:
+            given = detections.objects()
+            result = step(self.state, given, attachments, camera, self.parameters)
+        if isinstance(result, CrowdState):
+            self._crowd = result
+            columns = result.anchors
+        else:
+            self.state = result
+            columns = result.columns or AnchorColumns.of(result.anchors)
+        reported = columns.confidences >= self.parameters.min_report_confidence
+        return columns if reported.all() else columns.only(np.flatnonzero(reported))
 
 
 def step(
@@ -120,21 +185,72 @@ def step(
 
     Source: Liang et al. 2021, section III-B, b: alignment, then hypothesis reasoning.
     """
-    found = checked_detections(detections, parameters.space)
+    given = tuple(detections)
+    crowd = None
+    if are_many(state.anchors, given) and suits(parameters, state.register):
+        crowd = columns_of(given)
+    found = given if crowd is not None else checked_detections(given, parameters.space)
+    frame = _frame_after(state, attachments, camera, parameters)
+    if crowd is not None and (old := _columns_of(state)) is not None:
+        result = _step_of_crowd(old, crowd, state.register, frame)
+        if result is not None:
+            return _state_of(result) if isinstance(result, CrowdState) else result
+    reported = {detection.name: detection for detection in found if detection.name is not None}
+    if reported or state.register.bodies:
+        return _with_bodies(state, found, reported, frame)
+    seen, lost, register = _aligned(state.anchors, found, state.register, frame)
+    return _explained(state.anchors, seen, lost, (), register, frame)
+
+
+def _frame_after(
+    state: AnchoringState | CrowdState,
+    attachments: Iterable[tuple[str, str]],
+    camera: Camera | None,
+    parameters: AnchoringParameters,
+) -> Sightings:
+    """Give the circumstances of the next frame, the attachments and the camera checked."""
     if camera is not None:
         check_camera(camera)
     parents = parents_of(attachments)
-    frame = Sightings(
+    return Sightings(
         state.frame + 1,
         parameters,
         parents if parameters.use_attachments else {},
         View(parameters, camera),
     )
-    reported = {detection.name: detection for detection in found if detection.name is not None}
-    if reported or state.register.bodies:
-        return _with_bodies(state, found, reported, frame)
-    seen, lost, register = _aligned(state.anchors, found, state.register, frame)
-    return _explained(state, seen, lost, (), register, frame)
+
+
+def _columns_of(state: AnchoringState | CrowdState) -> AnchorColumns | None:
+    """Give the anchors as columns; None if they have what columns do not hold."""
+    if isinstance(state, CrowdState):
+        return state.anchors
+    return state.columns or columns_of_anchors(state.anchors)
+
+
+def _state_of(crowd: CrowdState) -> AnchoringState:
+    """Give the state with its anchors made."""
+    return AnchoringState(
+        crowd.anchors.anchors, crowd.dropped.anchors, crowd.register, crowd.frame, crowd.anchors
+    )
+
+
+def _step_of_crowd(
+    old: AnchorColumns, detections: DetectionColumns, register: NameRegister, frame: Sightings
+) -> CrowdState | AnchoringState | None:
+    """Give the next state by columns, or None where they are of no use.
+
+    Args:
+        old: The anchors of the last frame.
+        detections: Of this one, checked.
+        register: The names given so far.
+        frame: The circumstances.
+    """
+    met = sighted(old, detections, register, frame)
+    if met is None:
+        return None
+    if not met.takes_attachments:
+        return met.reasoned()
+    return _explained(old, met.seen.anchors, met.lost.anchors, (), met.register, frame)
 
 
 def _with_bodies(
@@ -154,11 +270,11 @@ def _with_bodies(
     things, lost, register = _aligned(old_things, unnamed, register, frame)
     seen = sorted([*bodies, *things], key=_by_name)
     gone = [frame.without_report(body) for name, body in old_bodies.items() if name not in reported]
-    return _explained(state, seen, lost, gone, register, frame)
+    return _explained(state.anchors, seen, lost, gone, register, frame)
 
 
 def _explained(
-    state: AnchoringState,
+    old: Sequence[Anchor],
     seen: Sequence[Anchor],
     lost: Sequence[Anchor],
     gone: Sequence[Anchor],
@@ -168,7 +284,7 @@ def _explained(
     """Give the next state, in which what is lost has been reasoned about.
 
     Args:
-        state: The last one.
+        old: The anchors of the last frame.
         seen: The anchors that have a detection, sorted by name.
         lost: Those that have none.
         gone: Those given up already.
@@ -180,7 +296,7 @@ def _explained(
         return AnchoringState(
             tuple(seen), tuple(sorted(gone, key=_by_name)), register, frame.number
         )
-    moves = _moves_of_parents(state.anchors, seen, frame.parents)
+    moves = _moves_of_parents(old, seen, frame.parents)
     explanation = explain(lost, seen, moves, frame.parents, frame.view)
     return AnchoringState(
         tuple(sorted([*seen, *explanation.kept], key=_by_name)),
@@ -197,45 +313,12 @@ def _aligned(
     frame: Sightings,
 ) -> tuple[Sequence[Anchor], Sequence[Anchor], NameRegister]:
     """Give the anchors with a detection, sorted by name, those without, and the names given."""
-    parameters = frame.parameters
-    aligned: Aligned | None = None
-    if parameters.comparison is CENTRE:
-        if parameters.space == "image":
-            aligned = align_singles(anchors, detections, parameters.tau)
-        if aligned is None and are_many(anchors, detections):
-            aligned = align_crowd(anchors, detections, parameters.tau, parameters.space)
-    if aligned is None:
-        aligned = _align_each(anchors, detections, frame)
+    aligned = who_is_who(anchors, detections, frame)
     seen = frame.of_pairs(aligned.pairs)
     if not aligned.appeared:
         return seen, aligned.lost, register
     new, register = _named(aligned.appeared, anchors, register, frame)
     return sorted(seen + new, key=_by_name), aligned.lost, register
-
-
-def _align_each(
-    anchors: Sequence[Anchor], detections: Sequence[Detection], frame: Sightings
-) -> Aligned:
-    """Align with any cost, in either space."""
-    order = _order(detections)
-    old = [frame.place(anchor) for anchor in anchors]
-    found = [frame.place(detections[index]) for index in order]
-    alignment = align(old, found, frame.parameters.tau, frame.parameters.comparison)
-    pairs = [
-        (
-            anchors[row],
-            detections[order[column]],
-            squared_distance(old[row].centre, found[column].centre),
-        )
-        for row, column in alignment.pairs
-    ]
-    # New objects are numbered as the detector lists them.
-    appeared = sorted(order[number] for number in alignment.appeared)
-    return Aligned(
-        pairs,
-        [anchors[row] for row in alignment.lost],
-        [detections[column] for column in appeared],
-    )
 
 
 def _named(
@@ -257,15 +340,6 @@ def _named(
     return new, register
 
 
-def _order(detections: Sequence[Detection]) -> Sequence[int]:
-    """Give an order to align in, in which even ties do not depend on the detector's."""
-    if len({detection.type for detection in detections}) == len(detections):
-        return range(len(detections))  # no two compete
-    plain = all(detection.position is None for detection in detections)
-    keys = list(map(_in_image if plain else _canonical, detections))
-    return sorted(range(len(detections)), key=keys.__getitem__)
-
-
 def _moves_of_parents(
     old: Sequence[Anchor], seen: Sequence[Anchor], parents: Mapping[str, str]
 ) -> dict[str, Move]:
@@ -279,7 +353,3 @@ def _moves_of_parents(
         for anchor in seen
         if anchor.name in before
     }
-
-
-def _canonical(detection: Detection) -> tuple[str, Box, tuple[float, ...], float]:
-    return detection.type, detection.box, detection.position or (), detection.score

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, fields
 from enum import StrEnum
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias, cast
 
 from aapa.detections import Box, Position
 
@@ -111,3 +112,48 @@ def anchor_of(  # noqa: PLR0913, PLR0917 - the fields of an anchor
     )
     draft.__class__ = Anchor  # type: ignore[assignment]
     return draft  # type: ignore[return-value]
+
+
+AnchorFields: TypeAlias = tuple[
+    str,
+    str,
+    Box,
+    AnchorStatus,
+    str | None,
+    float,
+    Position | None,
+    tuple[float, float] | None,
+    int,
+    str,
+    int,
+]
+"""The fields of an anchor, in its order."""
+
+
+class AnchorRow:
+    """The same draft, filled at one go: of many that are made at once it takes half the time."""
+
+    __slots__ = tuple(field.name for field in fields(Anchor))
+
+    def __init__(self, row: AnchorFields) -> None:
+        (
+            self.name,
+            self.type,
+            self.box,
+            self.status,
+            self.parent,
+            self.confidence,
+            self.position,
+            self.size,
+            self.last_seen,
+            self.reason,
+            self.streak,
+        ) = row
+
+
+def anchors_of(rows: Iterable[AnchorFields]) -> list[Anchor]:
+    """Give what `Anchor(*row)` gives for each row."""
+    drafts = list(map(AnchorRow, rows))
+    for draft in drafts:
+        draft.__class__ = Anchor  # type: ignore[assignment]
+    return cast("list[Anchor]", drafts)

@@ -82,3 +82,15 @@ def reaches_out(box: Box, image_size: tuple[int, int], margin_px: float) -> bool
         or box[2] > width - margin_px
         or box[3] > height - margin_px
     )
+
+
+def reach_out(
+    boxes: NDArray[np.float64], image_size: tuple[int, int], margin_px: float
+) -> NDArray[np.bool_]:
+    """Give (n) which of (n, 4) boxes `reaches_out`."""
+    width, height = image_size
+    x1, y1, x2, y2 = boxes.T
+    out: NDArray[np.bool_] = (
+        (x1 < margin_px) | (y1 < margin_px) | (x2 > width - margin_px) | (y2 > height - margin_px)
+    )
+    return out

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 _NOBODY = -1
@@ -53,11 +53,16 @@ def disjoint_exchanges(wanted: Iterable[int], rising: Iterable[int], bidding: Bi
     found = Exchanges([], [], [], [])
     rows: set[int] = set()
     columns: set[int] = set()
+    bidder_of, _, row_of = bidding
     for column, is_wanted in [*((c, True) for c in wanted), *((c, False) for c in rising)]:
+        if column in columns or bidder_of[column] in rows:
+            continue  # most of them: many want what one exchange settles
         trail, end = _trail(column, bidding, columns)
-        owner = bidding.row_of[column] if end != _CIRCLE else _NOBODY
-        movers = [bidding.bidder_of[each] for each in trail]
-        if not trail or not (is_wanted or end == _CIRCLE) or not rows.isdisjoint([*movers, owner]):
+        if not trail or not (is_wanted or end == _CIRCLE):
+            continue
+        owner = row_of[column] if end != _CIRCLE else _NOBODY
+        movers = [bidder_of[each] for each in trail]
+        if owner in rows or not rows.isdisjoint(movers):
             continue
         found.rows.extend(movers)
         found.columns.extend(trail)
@@ -72,28 +77,33 @@ def disjoint_exchanges(wanted: Iterable[int], rising: Iterable[int], bidding: Bi
 
 def leads_round(columns: Iterable[int], bidding: Bidding) -> bool:
     """Tell whether one of some columns owes its price to a circle."""
-    return any(_trail(column, bidding, ())[1] == _CIRCLE for column in columns)
+    return any(_trail(column, bidding, set())[1] == _CIRCLE for column in columns)
 
 
-def _trail(column: int, bidding: Bidding, taken: Collection[int]) -> tuple[list[int], int]:
+def _trail(column: int, bidding: Bidding, taken: set[int]) -> tuple[list[int], int]:
     """Follow who outbid whom, from a column back to where it began.
+
+    Args:
+        column: Where to start.
+        bidding: The offers.
+        taken: Columns that no trail may touch; those from which all trails lead there are added.
 
     Returns:
         The columns that would change hands, and the one that would be free then, or that there is
         none, or that the columns form a circle. No columns at all if one of them is taken.
     """
     bidder_of, column_of, _ = bidding
-    trail: list[int] = []
-    place: dict[int, int] = {}
+    trail: dict[int, None] = {}
     while column >= 0:
         if column in taken:
+            taken.update(trail)
             return [], _NOBODY
+        if column in trail:
+            columns = list(trail)
+            return columns[columns.index(column) :], _CIRCLE
         row = bidder_of[column]
         if row < 0:
             break
-        if column in place:
-            return trail[place[column] :], _CIRCLE
-        place[column] = len(trail)
-        trail.append(column)
+        trail[column] = None
         column = column_of[row]
-    return trail, column
+    return list(trail), column

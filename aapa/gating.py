@@ -67,28 +67,36 @@ def _by_grid(anchors: Rows, detections: Rows, reach: float, low: Rows, high: int
         low: (2) the corner of the grid.
         high: How many cells there are along y, an empty one at either end included.
     """
+    count = len(anchors)
     scale = 1 / (reach * _ROOM)
     places = [((side - low) * scale).astype(np.int64) for side in (anchors, detections)]
     cells = [place[:, 0] * high + place[:, 1] for place in places]
     # Column by column, and in it from the bottom up: three neighbours follow one another.
     own, others = (cell + high + 1 for cell in cells)
-    order = np.argsort(others, kind="stable")
-    begins = np.zeros(int(max(own.max(), others.max())) + high + 3, dtype=np.int64)
-    np.cumsum(np.bincount(others, minlength=len(begins) - 1), out=begins[1:])
+    last = int(max(own.max(), others.max())) + high + 3
+    # Numbers of two bytes are sorted many times as fast.
+    order = np.argsort(others.astype(np.uint16) if last < 2**16 else others, kind="stable")
+    begins = np.zeros(last, dtype=np.int64)
+    np.cumsum(np.bincount(others, minlength=last - 1), out=begins[1:])
     lowest = (own[:, None] + np.array([-high - 1, -1, high - 1])).ravel()
     start = begins[lowest]
     counts = begins[lowest + 3] - start
     ends = np.cumsum(counts)
-    if ends[-1] > _CROWD * _AROUND * len(anchors) * len(detections):
+    if ends[-1] > _CROWD * _AROUND * count * len(detections):
         return None
-    rows = np.repeat(np.arange(len(anchors)), counts.reshape(-1, 3).sum(axis=1))
-    columns = order[np.repeat(start - (ends - counts), counts) + np.arange(len(rows))]
+    each = counts.reshape(-1, 3).sum(axis=1)
+    numbers = np.repeat(start - (ends - counts), counts)
+    numbers += np.arange(len(numbers))
+    # Row by row the same anchor, so that it is repeated; the detections lie as the table has them.
     x, y = (
-        first[rows] - second[columns]
-        for first, second in zip(anchors.T.copy(), detections.T.copy(), strict=True)
+        first.repeat(each) - second[order].take(numbers)
+        for first, second in zip(anchors.T, detections.T, strict=True)
     )
-    near = (x * x + y * y <= reach * reach * _ROOM).nonzero()[0]
-    return rows[near], columns[near]
+    x *= x
+    y *= y
+    x += y
+    near = (x <= reach * reach * _ROOM).nonzero()[0]
+    return np.arange(count).repeat(each)[near], order.take(numbers[near])
 
 
 def _by_tree(anchors: Rows, detections: Rows, reach: float) -> Pairs:

@@ -26,6 +26,7 @@ from aapa.anchors import Anchor, AnchorStatus, anchor_of
 from aapa.boxes import centre_of, moved
 from aapa.detections import Box, Position
 from aapa.occluders import Occluders
+from aapa.reasons import SEEN_TOO_LITTLE, UNEXPLAINED, not_seen, occluded_by
 from aapa.view import View
 
 
@@ -198,9 +199,7 @@ def _grounds(
             elif reason is not None:
                 found[anchor.name] = _Ground(AnchorStatus.OUT_OF_VIEW, reason)
             elif (occluder := occluder_of[anchor.name]) is not None:
-                found[anchor.name] = _Ground(
-                    AnchorStatus.OCCLUDED, f"{occluder} stands in front of it."
-                )
+                found[anchor.name] = _Ground(AnchorStatus.OCCLUDED, occluded_by(occluder))
         if not found:
             break
         # The next round asks only about what this one has added: the rest has been asked.
@@ -228,7 +227,7 @@ def _concluded(anchor: Anchor, parent: Anchor | None, ground: _Ground | None, vi
     """Give the anchor as it is believed to be; a confidence below 0 says that it is given up."""
     streak = min(anchor.streak, 0) - 1
     if anchor.confidence < view.parameters.min_anchor_confidence:
-        return _faded(anchor, "it had been seen too little to be reasoned about", view, streak)
+        return _faded(anchor, SEEN_TOO_LITTLE, view, streak)
     if parent is not None:
         return _changed(
             anchor,
@@ -242,22 +241,17 @@ def _concluded(anchor: Anchor, parent: Anchor | None, ground: _Ground | None, vi
         return _changed(
             anchor, ground.status, None, anchor.confidence, ground.reason, streak=streak
         )
-    return _faded(anchor, "nothing explains why", view, streak)
+    return _faded(anchor, UNEXPLAINED, view, streak)
 
 
 def _faded(anchor: Anchor, why: str, view: View, streak: int) -> Anchor:
     # Rounded, so that ten losses of 0.1 are 1 and the last cycle does not depend on float dust.
     confidence = round(anchor.confidence - view.parameters.confidence_loss, 9)
-    outcome = f"its confidence falls to {confidence:.3g}" if confidence >= 0 else "it is given up"
     return _changed(
         anchor,
         AnchorStatus.MISSING,
         None,
         confidence,
-        f"It is not seen {_for_how_long(streak)}and {why}; {outcome}.",
+        not_seen(why, streak, confidence),
         streak=streak,
     )
-
-
-def _for_how_long(streak: int) -> str:
-    return f"for {-streak} frames " if streak < -1 else ""

@@ -79,17 +79,43 @@ class Occluders:
         margin = self._view.parameters.margin_px
         boxes = box_rows([thing.box for thing in self._things])
         asked = box_rows([anchor.box for anchor in anchors])
-        # Along x only what begins neither behind an anchor's end, nor a whole box before it; and
-        # a pixel more, so that rounding leaves nothing out that is then compared exactly.
-        order = np.argsort(boxes[:, 0])
-        begins = boxes[order, 0]
-        widest = (boxes[:, 2] - boxes[:, 0]).max()
-        first = np.searchsorted(begins, asked[:, 0] - margin - widest - 1, side="left")
-        counts = np.searchsorted(begins, asked[:, 2] + margin + 1, side="right") - first
-        ends = counts.cumsum()
-        behind = np.arange(len(asked)).repeat(counts)
-        number = order[(first - ends + counts).repeat(counts) + np.arange(ends[-1])]
-        hiding = overlaps(boxes[number], asked[behind], margin).nonzero()[0]
-        behind, number = behind[hiding], number[hiding]
-        sorted_ = np.lexsort((number, behind))
-        return behind[sorted_], number[sorted_]
+        return _overlapping(boxes, asked, margin)
+
+
+def first_overlapping(
+    things: NDArray[np.float64], asked: NDArray[np.float64], margin_px: float
+) -> NDArray[np.int64]:
+    """Give (m) the number of the first thing that overlaps each box, -1 where none does.
+
+    Args:
+        things: (n, 4) boxes, px, in the order in which they are asked.
+        asked: (m, 4) boxes that may lie behind them, px.
+        margin_px: Boxes closer than this overlap.
+    """
+    first = np.full(len(asked), -1, dtype=np.int64)
+    if len(things) and len(asked):
+        behind, number = _overlapping(things, asked, margin_px)
+        # Backwards, so that of several the first one stays.
+        first[behind[::-1]] = number[::-1]
+    return first
+
+
+def _overlapping(
+    boxes: NDArray[np.float64], asked: NDArray[np.float64], margin: float
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Give the numbers of asked boxes, and of the others, that overlap, in ascending order."""
+    # Along x only what begins neither behind a box's end, nor a whole box before it; and a
+    # pixel more, so that rounding leaves nothing out that is then compared exactly.
+    order = np.argsort(boxes[:, 0])
+    begins = boxes[order, 0]
+    widest = (boxes[:, 2] - boxes[:, 0]).max()
+    first = np.searchsorted(begins, asked[:, 0] - margin - widest - 1, side="left")
+    counts = np.searchsorted(begins, asked[:, 2] + margin + 1, side="right") - first
+    ends = counts.cumsum()
+    behind = np.arange(len(asked)).repeat(counts)
+    number = order[(first - ends + counts).repeat(counts) + np.arange(ends[-1])]
+    fronts = boxes.take(number, axis=0), asked.take(behind, axis=0)
+    hiding = overlaps(*fronts, margin).nonzero()[0]
+    behind, number = behind[hiding], number[hiding]
+    sorted_ = np.lexsort((number, behind))
+    return behind[sorted_], number[sorted_]

@@ -5,15 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import cast
 
-from aapa.anchors import Anchor, AnchorDraft, AnchorStatus, anchor_of
+from aapa.anchors import Anchor, AnchorFields, AnchorStatus, anchor_of, anchors_of
 from aapa.costs import Place
 from aapa.detections import Box, Detection, Position
 from aapa.parameters import AnchoringParameters
+from aapa.reasons import AT_REST, FIRST_TIME
 from aapa.view import View
-
-_AT_REST = "It is seen at its last place."
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -49,7 +47,7 @@ class Sightings:
     def of_new(self, name: str, detection: Detection) -> Anchor:
         """Give the anchor of something seen for the first time."""
         confidence = self.parameters.initial_confidence
-        return self._visible(name, detection, confidence, "It is seen for the first time.", 1)
+        return self._visible(name, detection, confidence, FIRST_TIME, 1)
 
     def of_old(self, anchor: Anchor, detection: Detection, squared: float) -> Anchor:
         """Give an anchor that was aligned with a detection.
@@ -87,7 +85,7 @@ class Sightings:
             position,
             size or anchor.size,
             self.number,
-            self._how_far(squared) if squared else _AT_REST,
+            self._how_far(squared) if squared else AT_REST,
             streak + 1 if streak > 0 else 1,
         )
 
@@ -96,31 +94,32 @@ class Sightings:
         parameters = self.parameters
         if parameters.position_gain < 1 or parameters.sure_score or parameters.space == "base":
             return [self.of_old(*pair) for pair in pairs]
-        # The same, written out for what most of a frame is: it is half of all the work.
+        # The same, written out for what most of a frame is: it is half of all the work,
+        # in which even the fastest way to format a number counts.
         number, gain, visible = self.number, parameters.confidence_gain, AnchorStatus.VISIBLE
-        seen: list[AnchorDraft] = []
+        rows: list[AnchorFields] = []
         for anchor, detection, squared in pairs:
             confidence, streak = anchor.confidence, anchor.streak
             if confidence < 1.0:
                 confidence = min(1.0, round(confidence + gain, 9))
-            draft = AnchorDraft(
-                anchor.name,
-                anchor.type,
-                detection.box,
-                visible,
-                None,
-                confidence,
-                detection.position,
-                detection.size or anchor.size,
-                number,
-                f"It is seen {math.sqrt(squared):.3g} px from its last place."
-                if squared
-                else _AT_REST,
-                streak + 1 if streak > 0 else 1,
+            rows.append(
+                (
+                    anchor.name,
+                    anchor.type,
+                    detection.box,
+                    visible,
+                    None,
+                    confidence,
+                    detection.position,
+                    detection.size or anchor.size,
+                    number,
+                    "It is seen %.3g px from its last place." % math.sqrt(squared)  # noqa: UP031
+                    if squared
+                    else AT_REST,
+                    streak + 1 if streak > 0 else 1,
+                )
             )
-            draft.__class__ = Anchor  # type: ignore[assignment]
-            seen.append(draft)
-        return cast("list[Anchor]", seen)
+        return anchors_of(rows)
 
     def without_report(self, body: Anchor) -> Anchor:
         """Give the last of a body that no longer reports its place."""

@@ -8,6 +8,7 @@ from aapa.boxes import centred, has_area, overlap, reaches_out
 from aapa.camera import Camera
 from aapa.detections import Box, Position
 from aapa.parameters import AnchoringParameters
+from aapa.reasons import OUTSIDE, REACHES_OUT
 
 _SMALLEST_DEPTH = 1e-6
 
@@ -29,6 +30,13 @@ class View:
     def is_flat(self) -> bool:
         """Whether nothing is known of depth, so that only boxes in the image count."""
         return self._posed is None
+
+    @property
+    def image_size(self) -> tuple[int, int] | None:
+        """Width and height of the image, px; None where nothing says what they are."""
+        if self.camera is not None:
+            return self.camera.width, self.camera.height
+        return self.parameters.image_size
 
     def box_of(self, box: Box, position: Position | None, size: tuple[float, float] | None) -> Box:
         """Give the box that an object has in this image, px.
@@ -77,12 +85,12 @@ class View:
                     f"It is {depth:.3f} m from the camera, "
                     f"which detects nothing nearer than {camera.near_m:.3f} m."
                 )
-        size = self._image_size
+        size = self.image_size
         if size is None or not reaches_out(box, size, self.parameters.margin_px):
             return None
         if box[2] <= 0 or box[3] <= 0 or box[0] >= size[0] or box[1] >= size[1]:
-            return "It lies outside the image."
-        return "Part of it reaches out of the image."
+            return OUTSIDE
+        return REACHES_OUT
 
     def hides(self, front: tuple[Box, Position | None], back: tuple[Box, Position | None]) -> bool:
         """Tell whether one object stands in front of another.
@@ -100,9 +108,3 @@ class View:
     @property
     def _posed(self) -> Camera | None:
         return self.camera if self.parameters.space == "base" else None
-
-    @property
-    def _image_size(self) -> tuple[int, int] | None:
-        if self.camera is not None:
-            return self.camera.width, self.camera.height
-        return self.parameters.image_size

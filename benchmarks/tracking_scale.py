@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
-from aapa import Anchoring, AnchoringParameters, Detection, Place, align
+from aapa import Anchoring, AnchoringParameters, Detection, DetectionColumns, Place, align
 
 Centres = NDArray[np.float64]
 """(n, 2) in px."""
@@ -36,6 +36,8 @@ def scaling_section(rounds: int) -> list[str]:
         ("scipy, full matrix, tau 3000", full_matrix),
         ("whole frame, tau 3000", partial(whole_frames, 3000.0)),
         ("whole frame, tau 6500", partial(whole_frames, 6500.0)),
+        ("whole frame in columns, tau 3000", partial(whole_frames_in_columns, 3000.0)),
+        ("whole frame in columns, tau 6500", partial(whole_frames_in_columns, 6500.0)),
     ]
     rows = []
     for name, measure in tables:
@@ -56,7 +58,10 @@ def scaling_section(rounds: int) -> list[str]:
         (
             f"*Whole frame* is `Anchoring.update` in a stream of {FRAMES} frames, the first {WARM} "
             "left out: checks, alignment, an `Anchor` with its reason for every object, and the "
-            "reasoning about what is missed, of which there is a backlog then."
+            "reasoning about what is missed, of which there is a backlog then. *In columns* is the "
+            "same stream by `Anchoring.update_columns`: from an array of boxes, as detectors give "
+            "it, to arrays of the names, boxes, confidences and statuses of all anchors. The "
+            "reasons are kept as numbers; no `Anchor` is asked for."
         ),
         "",
         f"| | {heads} |",
@@ -122,11 +127,9 @@ def solve_all(old: Centres, new: Centres) -> None:
 
 def whole_frames(tau: float, count: int, rounds: int) -> str:
     """Give the time of an update within a stream; one of each stream's frames after the other."""
-    side = math.ceil(SPACING * math.sqrt(count))
     times = []
     for seed in range(max(1, rounds // 2)):
-        parameters = AnchoringParameters(tau=tau, image_size=(side, side))
-        anchoring = Anchoring(parameters)
+        anchoring = beginning(tau, count)
         for number, frame in enumerate(stream(count, seed)):
             start = time.process_time()
             anchoring.update(frame)
@@ -135,17 +138,42 @@ def whole_frames(tau: float, count: int, rounds: int) -> str:
     return shown(times)
 
 
+def whole_frames_in_columns(tau: float, count: int, rounds: int) -> str:
+    """Give the time from an array of boxes to arrays of what is anchored, within a stream."""
+    times = []
+    for seed in range(max(1, rounds // 2)):
+        anchoring = beginning(tau, count)
+        for number, boxes in enumerate(boxes_of(count, seed)):
+            start = time.process_time()
+            found = anchoring.update_columns(DetectionColumns("object", boxes))
+            read = found.names, found.boxes, found.confidences, found.statuses
+            if number >= WARM:
+                times.append(time.process_time() - start)
+            assert len(set(map(len, read))) == 1
+    return shown(times)
+
+
+def beginning(tau: float, count: int) -> Anchoring:
+    """Give an anchoring that knows nothing yet of a scene of so many objects."""
+    side = math.ceil(SPACING * math.sqrt(count))
+    return Anchoring(AnchoringParameters(tau=tau, image_size=(side, side)))
+
+
 def stream(count: int, seed: int) -> Iterator[list[Detection]]:
     """Give the detections of frame after frame."""
+    for boxes in boxes_of(count, seed):
+        yield [Detection("object", (a, b, c, d)) for a, b, c, d in boxes.tolist()]
+
+
+def boxes_of(count: int, seed: int) -> Iterator[NDArray[np.float64]]:
+    """Give (n, 4) the boxes that are detected in frame after frame, px."""
     chance = np.random.default_rng(seed)
     side = SPACING * math.sqrt(count)
     places = chance.uniform(0, side, (count, 2))
     for _ in range(FRAMES):
         places += chance.normal(0, NOISE, places.shape)
-        yield [
-            Detection("object", (x - 9.0, y - 9.0, x + 9.0, y + 9.0))
-            for x, y in detected(places, side, chance).tolist()
-        ]
+        centres = detected(places, side, chance)
+        yield np.concatenate([centres - 9.0, centres + 9.0], axis=1)
 
 
 def mean_of(call: Callable[[], object], count: int) -> float:
