@@ -125,6 +125,8 @@ class Anchoring:
         state = step(state, detections, attachments, camera, self.parameters)
         self._state, self._crowd = state, None
         least = self.parameters.min_report_confidence
+        if state.columns is not None and (state.columns.confidences >= least).all():
+            return state.anchors
         return tuple([anchor for anchor in state.anchors if anchor.confidence >= least])
 
     def update_columns(

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, fields
 from enum import StrEnum
-from typing import NamedTuple, TypeAlias, cast
+from types import MemberDescriptorType
+from typing import NamedTuple, TypeAlias, cast, overload
 
 from aapa.detections import Box, Position
+from aapa.reasons import seen_off
 
 
 class AnchorStatus(StrEnum):
@@ -56,6 +58,39 @@ class Anchor:
     last_seen: int = 0
     reason: str = ""
     streak: int = 0
+
+
+class _Reason:
+    """The slot of the reason, in which a distance stands until the sentence is read.
+
+    Most anchors of a frame are seen a little way off, few are asked why they are believed to be
+    there, and writing a number out takes as long as making the rest of an anchor.
+
+    Args:
+        slot: The slot of the class.
+    """
+
+    def __init__(self, slot: MemberDescriptorType) -> None:
+        self._slot = slot
+
+    @overload
+    def __get__(self, anchor: None, owner: type[Anchor]) -> _Reason: ...
+    @overload
+    def __get__(self, anchor: Anchor, owner: type[Anchor]) -> str: ...
+    def __get__(self, anchor: Anchor | None, owner: type[Anchor]) -> str | _Reason:
+        if anchor is None:
+            return self
+        reason: str | float = self._slot.__get__(anchor, owner)
+        if isinstance(reason, float):
+            reason = seen_off(reason)
+            self._slot.__set__(anchor, reason)
+        return reason
+
+    def __set__(self, anchor: Anchor, reason: str) -> None:
+        self._slot.__set__(anchor, reason)
+
+
+Anchor.reason = _Reason(Anchor.reason)  # type: ignore[assignment, arg-type, misc]
 
 
 @dataclass(slots=True)
@@ -124,10 +159,10 @@ AnchorFields: TypeAlias = tuple[
     Position | None,
     tuple[float, float] | None,
     int,
-    str,
+    str | float,
     int,
 ]
-"""The fields of an anchor, in its order."""
+"""The fields of an anchor, in its order; for the reason the distance from the last place, px."""
 
 
 class AnchorRow:
@@ -152,7 +187,7 @@ class AnchorRow:
 
 
 def anchors_of(rows: Iterable[AnchorFields]) -> list[Anchor]:
-    """Give what `Anchor(*row)` gives for each row."""
+    """Give what `Anchor(*row)` gives for each row, the reasons in words."""
     drafts = list(map(AnchorRow, rows))
     for draft in drafts:
         draft.__class__ = Anchor  # type: ignore[assignment]

@@ -26,6 +26,11 @@ class Why(IntEnum):
     UNEXPLAINED = 7
 
 
+def seen_off(distance_px: float) -> str:
+    """Say how far from its last place an object is seen."""
+    return f"It is seen {distance_px:.3g} px from its last place."
+
+
 def occluded_by(occluder: str) -> str:
     """Say what hides an object."""
     return f"{occluder} stands in front of it."

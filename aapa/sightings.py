@@ -94,8 +94,7 @@ class Sightings:
         parameters = self.parameters
         if parameters.position_gain < 1 or parameters.sure_score or parameters.space == "base":
             return [self.of_old(*pair) for pair in pairs]
-        # The same, written out for what most of a frame is: it is half of all the work,
-        # in which even the fastest way to format a number counts.
+        # The same, written out for what most of a frame is: it is half of all the work.
         number, gain, visible = self.number, parameters.confidence_gain, AnchorStatus.VISIBLE
         rows: list[AnchorFields] = []
         for anchor, detection, squared in pairs:
@@ -113,9 +112,7 @@ class Sightings:
                     detection.position,
                     detection.size or anchor.size,
                     number,
-                    "It is seen %.3g px from its last place." % math.sqrt(squared)  # noqa: UP031
-                    if squared
-                    else AT_REST,
+                    math.sqrt(squared) if squared else AT_REST,
                     streak + 1 if streak > 0 else 1,
                 )
             )

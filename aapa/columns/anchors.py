@@ -243,11 +243,9 @@ def objects(values: Sequence[object]) -> Objects:
     return np.fromiter(values, dtype=object, count=len(values))
 
 
-def _sentences(grounds: Grounds, confidences: list[float], streaks: list[int]) -> list[str]:
-    """Give the reason of each."""
-    roots = np.sqrt(grounds.squares).tolist()
-    # Of the ways to format a number this is the fastest.
-    sentences = ["It is seen %.3g px from its last place." % root for root in roots]  # noqa: UP031
+def _sentences(grounds: Grounds, confidences: list[float], streaks: list[int]) -> list[str | float]:
+    """Give the reason of each, or how far off it is seen, px."""
+    sentences: list[str | float] = np.sqrt(grounds.squares).tolist()
     others = np.flatnonzero(grounds.whys != Why.MOVED)
     for number, why in zip(others.tolist(), grounds.whys[others].tolist(), strict=True):
         if why in _FIXED:
