@@ -66,10 +66,12 @@ class DetectionColumns:
     @property
     def are_sound(self) -> bool:
         """Whether all boxes, scores and types are what they have to be."""
-        return (
-            set(map(type, self.types)) <= {str}
-            and "" not in self.types
-            and _in_range(self.boxes, self.scores)
+        try:
+            different = set(self.types)
+        except TypeError:  # what has no hash is no name
+            return False
+        return all(isinstance(type_, str) and type_ for type_ in different) and _in_range(
+            self.boxes, self.scores
         )
 
     def objects(self) -> list[Detection]:
@@ -98,18 +100,33 @@ def columns_of(detections: Sequence[object]) -> DetectionColumns | None:
     if any(d.position is not None or d.size is not None or d.name is not None for d in given):
         return None
     boxes = [detection.box for detection in given]
-    if set(map(type, boxes)) != {tuple} or set(map(len, boxes)) != {4}:
-        return None
-    numbers = list(chain.from_iterable(boxes))
     scores = [detection.score for detection in given]
-    if set(map(type, numbers)) != {float} or set(map(type, scores)) != {float}:
+    if set(map(type, boxes)) != {tuple} or set(map(type, scores)) != {float}:
+        return None
+    if not _are_boxes(boxes):
         return None
     columns = DetectionColumns.__new__(DetectionColumns)
     columns.types = [detection.type for detection in given]
-    columns.boxes = np.fromiter(numbers, np.float64, 4 * count).reshape(count, 4)
+    numbers = np.fromiter(list(chain.from_iterable(boxes)), np.float64, 4 * count)
+    columns.boxes = numbers.reshape(count, 4)
     columns.scores = np.fromiter(scores, np.float64, count)
     columns.tuples = boxes
     return columns if columns.are_sound else None
+
+
+def _are_boxes(boxes: Sequence[Box]) -> bool:
+    """Tell whether tuples are of four numbers, with nothing to convert."""
+    try:
+        odd = [
+            0
+            for x1, y1, x2, y2 in boxes
+            if not (
+                type(x1) is float and type(y1) is float and type(x2) is float and type(y2) is float
+            )
+        ]
+    except ValueError:  # not of four
+        return False
+    return not odd
 
 
 def _in_range(boxes: Rows, scores: NDArray[np.float64]) -> bool:
