@@ -57,11 +57,11 @@ def scaling_section(rounds: int) -> list[str]:
         "",
         (
             f"*Whole frame* is `Anchoring.update` in a stream of {FRAMES} frames, the first {WARM} "
-            "left out: checks, alignment, an `Anchor` with its reason for every object, and the "
-            "reasoning about what is missed, of which there is a backlog then. *In columns* is the "
-            "same stream by `Anchoring.update_columns`: from an array of boxes, as detectors give "
-            "it, to arrays of the names, boxes, confidences and statuses of all anchors. The "
-            "reasons are kept as numbers; no `Anchor` is asked for."
+            "left out: checks, alignment, an `Anchor` for every object (its reason is put into "
+            "words when it is read), and the reasoning about what is missed, of which there is a "
+            "backlog then. *In columns* is the same stream by `Anchoring.update_columns`: from an "
+            "array of boxes, as detectors give it, to arrays of the names, boxes, confidences and "
+            "statuses of all anchors. The reasons are kept as numbers; no `Anchor` is asked for."
         ),
         "",
         f"| | {heads} |",

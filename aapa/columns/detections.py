@@ -70,9 +70,8 @@ class DetectionColumns:
             different = set(self.types)
         except TypeError:  # what has no hash is no name
             return False
-        return all(isinstance(type_, str) and type_ for type_ in different) and _in_range(
-            self.boxes, self.scores
-        )
+        names = set(map(type, different)) <= {str} and "" not in different
+        return names and _in_range(self.boxes, self.scores)
 
     def objects(self) -> list[Detection]:
         """Give the detections one by one."""
