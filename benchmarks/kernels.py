@@ -53,7 +53,7 @@ WAYS = {
     "left-of": ("list", "block", "sweep"),
 }
 STEP_MM = 10
-GROUP_WAYS = ("few", "near", "whole", "alone")
+GROUP_WAYS = ("few", "flat", "near", "whole", "alone")
 MOVED = ("x", "y", "z")
 
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from math import isfinite, isnan
+from math import hypot, isfinite, isnan
 from typing import Any, NamedTuple, TypeAlias
 
 from icarus_lite.errors import FrameError
@@ -21,7 +21,6 @@ Entry: TypeAlias = tuple[str, int, Any]
 """A fact that may be given: its predicate, the number of its arguments, and its key."""
 
 _NUMERIC = {int, float}
-_WHOLE = {int}
 _ABSENT: Any = object()
 
 _Values: TypeAlias = Mapping[str, Sequence[Any]]
@@ -162,16 +161,16 @@ class Base:
                 _check_values(attribute, names, values)
         last = self._last.get(type_)
         if last is not None and last[0] == names:  # the same objects move again, as they mostly do
-            _, records, old = last
+            known, records, old = last
         else:
-            records, old = self._records(type_, names), {}
+            known, records, old = [*names], self._records(type_, names), {}
         if old.keys() != lists.keys():
             old = {a: [record.get(a, _ABSENT) for record in records] for a in lists}
         for attribute, values in lists.items():
             for record, value in zip(records, values):  # noqa: B905 # strict costs a tenth of it
                 record[attribute] = value
         self._journal.append(_Columns(records, old))
-        self._last[type_] = [*names], records, lists
+        self._last[type_] = known, records, lists
         return lists, plain
 
     def _records(self, type_: str, names: Sequence[str]) -> list[dict[str, Value]]:
@@ -388,13 +387,15 @@ def _as_tuple(values: Sequence[Value]) -> tuple[Value, ...]:
 
 def _are_plain(values: Sequence[Any]) -> bool:
     """Tell whether all values are numbers, none of them large: finite at any rate."""
-    types = {*map(type, values)}
-    if types == _WHOLE:
-        return bool(min(values) >= -PLAIN and max(values) <= PLAIN)
-    if not types <= _NUMERIC:
+    if not {*map(type, values)} <= _NUMERIC:
         return False
-    if sum(map(abs, values)) <= PLAIN:
-        return True
+    try:
+        # No number is larger than the root of the sum of all squares, which is found much faster
+        # than the largest number; it is no number itself where one of them is none.
+        if hypot(*values) <= PLAIN:
+            return True
+    except OverflowError:  # an integer beyond every float
+        return False
     # Where one is no number at all, the smallest and the greatest may not tell, but the sum does.
     return not isnan(sum(values)) and bool(min(values) >= -PLAIN and max(values) <= PLAIN)
 

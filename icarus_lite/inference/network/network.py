@@ -194,7 +194,7 @@ class Network(Asking):
                 else:
                     given += self._ranks(entry)
         try:
-            return together(before, self._running.update(objects, given, moves))
+            found = self._running.update(objects, given, moves)
         except BudgetError:
             self._restore()
             raise
@@ -209,6 +209,7 @@ class Network(Asking):
         except BaseException:
             self._restore()
             raise
+        return together(before, found) if before else found
 
     def _begin_in(self, form: frozenset[str]) -> list[Event]:
         """Load everything into another form of the network, or for the first time."""

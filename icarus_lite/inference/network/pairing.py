@@ -145,11 +145,15 @@ class Pairing:
 
     def _moving(self, changed: Changed, known: Mapping[int, int]) -> int | None:
         """Give the one set of objects that kernels have to look at, if none came and none went."""
-        paired = self._paired
-        identities = [identity for identity in changed if identity in paired]
-        if len(identities) != 1 or known.get(identities[0]) != len(changed[identities[0]]):
+        paired, moving = self._paired, None
+        for identity in changed:
+            if identity in paired:
+                if moving is not None:
+                    return None
+                moving = identity
+        if moving is None or known.get(moving) != len(changed[moving]):
             return None
-        return identities[0]
+        return moving
 
     def _disarm_others(self, together: _Group) -> None:
         """Let the other groups know that objects move that rules over two types see as well."""
@@ -211,4 +215,5 @@ def _tell(
         kernel.show(added)
     if kernel.number is not None:
         record((kernel.number, added, removed, ()))
-    check(len(kernel.store), kernel.clause)
+    if added:
+        check(len(kernel.store.relation), kernel.clause)

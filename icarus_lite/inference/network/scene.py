@@ -205,14 +205,18 @@ class Scene:
         names, moved = move.names, move.columns
         attributes = tuple(moved)
         for type_ in move.types:
-            movement = self._movement(type_, attributes)
+            try:
+                movement = self._movements[type_, attributes]
+            except KeyError:
+                movement = self._movement(type_, attributes)
             if movement is None:
                 continue
             slots = movement.table.move(names, moved, plain=move.plain)
             if movement.numeric:
-                turn.changed[movement.identity] = slots
-                turn.known[movement.identity] = len(slots)
-                turn.attributes[movement.identity] = movement.attributes
+                identity = movement.identity
+                turn.changed[identity] = slots
+                turn.known[identity] = len(slots)
+                turn.attributes[identity] = movement.attributes
             if movement.views:
                 for name, slot in zip(names, slots, strict=True):
                     _see(movement.views, name, slot, turn.shows)

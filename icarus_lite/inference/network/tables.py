@@ -102,9 +102,8 @@ class Table:
         slots, columns = self._last_slots, self.objects.columns
         places, numeric = columns.places, []
         for attribute, values in moved.items():
-            place = places.get(attribute)
-            if place is not None:
-                numeric.append((place, values))
+            if attribute in places:
+                numeric.append((places[attribute], values))
             elif attribute in self._others:
                 column = self._others[attribute]
                 for slot, value in zip(slots, values, strict=True):

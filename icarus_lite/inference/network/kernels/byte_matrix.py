@@ -90,6 +90,18 @@ class ByteMatrix(PairRelation):
         """Rely no longer on where objects were: moves are followed elsewhere from now on."""
         self._codes = self._window = self._held = None
 
+    def truths(self, left: Slots, right: Slots) -> Truths:
+        """Tell of some pairs whether each is in the relation: (n,) from (n,) left and right."""
+        return self._grid[left, right].view(np.bool_)
+
+    def is_exactly(self, left: int, right: int) -> bool:
+        """Ask the exact test about a pair.
+
+        Raises:
+            InferenceError: it cannot be evaluated.
+        """
+        return self._tester.is_exactly(left, right, on_left=True)
+
     def compare(self, hold: Truths, doubt: Truths | None) -> Change | None:
         """Give the net change to what holds now of all pairs; None if there is none.
 

@@ -148,32 +148,30 @@ class Columns:
             plain: Whether all values are plain numbers.
         """
         count, size = len(slots), self.size
+        lists, arrays, every = self.lists, self._arrays, self._stale
+        if first is not None and self._packed[0] != count:
+            self._packed = count, Struct(f"{count}d")
         for place, values in moved:
-            column, stale = self.lists[place], self._stale[place]
+            column, stale = lists[place], every[place]
             if first is None:
                 for slot, value in zip(slots, values):  # noqa: B905 # strict costs a tenth of it
                     column[slot] = value
             else:
                 column[first : first + count] = values
-                array = self._arrays[place]
+                array = arrays[place]
                 fits = plain and (count == size or stale == [])
                 if fits and array is not None and len(array) >= size:
-                    self._pack(array, first, values)
-                    self._stale[place] = []
+                    # Into its memory: a third of what it costs to assign them.
+                    self._packed[1].pack_into(array.data, 8 * first, *values)
+                    if stale != []:
+                        every[place] = []
                     continue
             if stale is None:
                 continue
             if 4 * (len(stale) + count) > size:
-                self._stale[place] = None
+                every[place] = None
             else:
                 stale.extend(slots)
-
-    def _pack(self, array: Numbers, first: int, values: Sequence[Value]) -> None:
-        """Write numbers into an array's memory: a third of what it costs to assign them."""
-        count = len(values)
-        if self._packed[0] != count:
-            self._packed = count, Struct(f"{count}d")
-        self._packed[1].pack_into(array.data, 8 * first, *values)
 
     def judge(self, slots: Sequence[int]) -> None:
         """Find out which of some objects are unusual."""

@@ -79,6 +79,15 @@ GROUP_NEAR_OBJECT = 0.7
 FEW_MOVED = 400
 """More moved objects than that are never followed one by one together."""
 
+FLAT = 6.0
+"""All pairs of all rules of a group laid out, and compared with those of before."""
+
+FLAT_OPERATION = 0.5
+"""One operation there; those that are alike share a numpy call."""
+
+FLAT_PAIR = 0.0008
+"""One operation on one pair there."""
+
 GROUP_CALL = 8.0
 """All pairs of all rules of a group, apart from the operations."""
 
@@ -207,7 +216,7 @@ class GroupCosts:
         return cls(sum(each.operations for each in costs), len(costs), boxed)
 
     def choose(self, moved: int, size: int, *, arrays: bool) -> str:
-        """Choose a way: `few`, `near`, `whole`, or `alone` where each rule had better go alone.
+        """Choose a way: `few`, `flat`, `whole` or `near`, or `alone`: each rule by itself.
 
         Args:
             moved: How many objects have moved.
@@ -221,6 +230,9 @@ class GroupCosts:
         ways = {"few": moved * (GROUP_MOVE + rate * places)}
         if arrays:
             call = GROUP_CALL + BLOCK_OPERATION * self.operations
+            ways["flat"] = (
+                FLAT + FLAT_OPERATION * self.operations + FLAT_PAIR * self.operations * size * size
+            )
             ways["whole"] = call + GROUP_PAIR * self.operations * size * size
             if self.boxed:
                 ways["near"] = GROUP_NEAR + call + GROUP_NEAR_OBJECT * size
@@ -234,7 +246,7 @@ class OneGroupWay(GroupCosts):
     """Costs by which one way always seems the cheapest: to measure it, or to test it, alone.
 
     Args:
-        way: `few`, `near`, `whole` or `alone`.
+        way: `few`, `flat`, `near`, `whole` or `alone`.
     """
 
     way: str = "few"

@@ -17,10 +17,12 @@ import numpy as np
 
 from icarus_lite.inference.network.kernels.columns import PLAIN, Columns, Numbers
 from icarus_lite.inference.network.kernels.exact import variables_of
+from icarus_lite.inference.network.kernels.flat import FlatPairs
 from icarus_lite.inference.network.kernels.group_program import GroupProgram
 from icarus_lite.inference.network.kernels.keys import Keys
 from icarus_lite.inference.network.kernels.matrix import MatrixRelation
 from icarus_lite.inference.network.kernels.neighbours import FEW_STRIPS
+from icarus_lite.inference.network.kernels.notes import Notes
 from icarus_lite.inference.network.kernels.order import OrderRelation
 from icarus_lite.inference.network.kernels.program import helpers
 from icarus_lite.inference.network.kernels.relation import Change
@@ -46,9 +48,9 @@ class PairGroup:
     """
 
     __slots__ = (
-        "_armed_for", "_arrays", "_choice", "_columns", "_derived", "_few", "_given", "_is_behind",
-        "_is_limiting", "_keys", "_limits", "_matrices", "_moving", "_near", "_program", "_reach",
-        "_relations", "_rows", "_slots", "_whole", "_wholes",
+        "_armed_for", "_arrays", "_choice", "_columns", "_derived", "_few", "_flat", "_found",
+        "_given", "_is_behind", "_is_limiting", "_keys", "_limits", "_matrices", "_moving", "_near",
+        "_program", "_reach", "_relations", "_rows", "_slots", "_way", "_whole", "_wholes",
     )  # fmt: skip
 
     def __init__(
@@ -77,7 +79,9 @@ class PairGroup:
         self._is_limiting = False
         self._slots: Sequence[int] = ()
         self._wholes: Sequence[Any] = ()
-        space, given = self._space()
+        self._way = ""
+        self._found: dict[int, Change] = {}
+        space, given, self._flat = self._space()
         self._few: Callable[[Sequence[int], Keys | None], Found] = space["follow"]
         self._whole: Callable[..., Sequence[Any]] | None = space.get("whole")
         self._near: Callable[..., Sequence[Any]] = space.get("near_pairs", _no_arrays)
@@ -91,20 +95,21 @@ class PairGroup:
         )
         self._limits = self._limiting_attributes()
 
-    def _space(self) -> tuple[dict[str, Any], list[tuple[Columns, str]]]:
+    def _space(self) -> tuple[dict[str, Any], list[tuple[Columns, str]], FlatPairs | None]:
         """Run the generated definitions over the lists of this network."""
         source, columns_of = self._program.source, {}
         for relation, member in zip(self._relations, self._program.members, strict=True):
             for side, type_ in zip(relation.sides, (member.left, member.right), strict=True):
                 columns_of[type_] = side.columns
+        notes = Notes(self._program.members, *self._rows)
         space: dict[str, Any] = {
             **helpers(),
             "bisect_left": bisect_left,
             "bisect_right": bisect_right,
             "reach": self._reach,
-            "note_mirrored": self._note_mirrored,
-            "note_on_left": self._note_on_left,
-            "note_on_right": self._note_on_right,
+            "note_mirrored": notes.mirrored,
+            "note_on_left": notes.on_left,
+            "note_on_right": notes.on_right,
         }
         for number, relation in enumerate(self._relations):
             space[f"left_rows_{number}"] = self._rows[0][number]
@@ -116,8 +121,13 @@ class PairGroup:
         for name, (number, word, place) in source.derived.items():
             space[name] = self._relations[number].sides[word == "right"].derived[place]
         exec(self._program.code, space)  # noqa: S102 - it was written here, from a checked domain
-        places = [source.columns[name] for name in source.arrays or ()]
-        return space, [(columns_of[type_], attribute) for type_, attribute in places]
+        every = {
+            name: (columns_of[t], attribute) for name, (t, attribute) in source.columns.items()
+        }
+        flat = None
+        if source.flat is not None:
+            flat = FlatPairs(source.flat, space, every, columns_of, self._relations)
+        return space, [every[name] for name in source.arrays or ()], flat
 
     def _limiting_attributes(self) -> frozenset[str]:
         """Give the attributes on which the reach of the rules depends."""
@@ -157,15 +167,39 @@ class PairGroup:
         if self._is_limiting:
             self._set_reach()
         self._slots = slots
+        if way != self._way:
+            self._turn_to(way)
         if way == "few":
             return self._follow_few(slots)
+        if way == "flat":
+            return self._follow_flat()
         return (self._follow_near() if way == "near" else None) or self._follow_whole()
 
     def _choose(self, moved: int, size: int) -> str:
         costs, others = self._program.costs, size
         for relation in self._relations:
             others = max(others, *(side.size for side in relation.sides))
-        return costs.choose(moved, others, arrays=self._whole is not None)
+        way = costs.choose(moved, others, arrays=self._whole is not None)
+        return "whole" if way == "flat" and self._flat is None else way
+
+    def _turn_to(self, way: str) -> None:
+        """Rely no longer on what another way has left behind."""
+        if "flat" in (way, self._way):
+            for _, matrix in self._matrices:
+                matrix.forget()
+            if self._flat is not None:
+                self._flat.forget()
+        self._way = way
+
+    def _follow_flat(self) -> Found:
+        assert self._flat is not None, "it was chosen"
+        self._is_behind = True
+        if self._program.source.may_warn:
+            with np.errstate(all="ignore"):
+                self._found = self._flat.follow()
+        else:
+            self._found = self._flat.follow()
+        return {**self._found}
 
     def _follow_few(self, slots: Sequence[int]) -> Found | None:
         if self._is_behind:
@@ -240,6 +274,9 @@ class PairGroup:
         """Let a relation that is an order of keys follow; give what it gains and loses."""
         relation = self._relations[number]
         assert isinstance(relation, OrderRelation), "all others are found beforehand"
+        if self._way == "flat":
+            assert self._flat is not None, "it was chosen"
+            return relation.taken(*self._flat.keys(number), self._found.get(number, ([], [])))
         if self._is_behind:
             return relation.replaced(*self._wholes[number])
         member = self._program.members[number]
@@ -275,6 +312,8 @@ class PairGroup:
         for relation in self._relations:
             for side in relation.sides:  # those of partners too: they are read as well
                 side.ready_lists()
+        if self._flat is not None:
+            self._flat.arm(self._columns, attributes)
         self._set_reach()
         self._is_behind = True
         self._is_limiting = not self._limits.isdisjoint(attributes)
@@ -310,76 +349,6 @@ class PairGroup:
             self._keys.replace(self._columns.array(self._program.source.box[0].attribute).copy())
             self._keys.rank()
 
-    # -- noting what is new --------------------------------------------------------------------
-
-    def _note_mirrored(
-        self,
-        found: dict[int, Change],
-        number: int,
-        slot: int,
-        moved: Sequence[int],
-        now: list[int],
-        before: list[int],
-    ) -> None:
-        rows = self._rows[0][number]
-        rows[slot] = now
-        for change, others in zip(_change_in(found, number), _less(now, before), strict=True):
-            for other in others:
-                change.append((slot, other))
-                if other not in moved:
-                    change.append((other, slot))
-                    rows[other] = None
-
-    def _note_on_left(
-        self,
-        found: dict[int, Change],
-        number: int,
-        slot: int,
-        _moved: Sequence[int],
-        now: list[int],
-        before: list[int],
-    ) -> None:
-        self._rows[0][number][slot] = now
-        partners = self._rows[1][number]
-        for change, others in zip(_change_in(found, number), _less(now, before), strict=True):
-            for other in others:
-                change.append((slot, other))
-                partners[other] = None
-
-    def _note_on_right(
-        self,
-        found: dict[int, Change],
-        number: int,
-        slot: int,
-        moved: Sequence[int],
-        now: list[int],
-        before: list[int],
-    ) -> None:
-        self._rows[1][number][slot] = now
-        member = self._program.members[number]
-        known = moved if member.left == member.right else ()
-        partners = self._rows[0][number]
-        for change, others in zip(_change_in(found, number), _less(now, before), strict=True):
-            for other in others:
-                if other not in known:
-                    change.append((other, slot))
-                    partners[other] = None
-
-
-def _change_in(found: dict[int, Change], number: int) -> Change:
-    change = found.get(number)
-    if change is None:
-        change = found[number] = ([], [])
-    return change
-
 
 def _no_arrays(*_: object) -> Sequence[Any]:
     raise AssertionError("it is not chosen where arrays will not do")
-
-
-def _less(now: list[int], before: list[int]) -> tuple[list[int], list[int]]:
-    """Give what is in one list only: those of now, and those of before."""
-    return (
-        [each for each in now if each not in before],
-        [each for each in before if each not in now],
-    )

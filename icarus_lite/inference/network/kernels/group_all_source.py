@@ -10,25 +10,32 @@ from dataclasses import dataclass, field
 
 from icarus_lite.inference.network.kernels.array_source import ArrayWriter, NotVectorizableError
 from icarus_lite.inference.network.kernels.columns import PLAIN
-from icarus_lite.inference.network.kernels.exact import PairSide
-from icarus_lite.inference.network.kernels.group_members import GroupNames, Member
-from icarus_lite.inference.network.kernels.ranges import is_guarded
-from icarus_lite.language.syntax import Call, Expression, Variable
+from icarus_lite.inference.network.kernels.group_members import GroupNames
+from icarus_lite.inference.network.kernels.group_terms import (
+    canonical,
+    derived_of,
+    renamed,
+    renamed_tests,
+)
+from icarus_lite.language.syntax import Expression, Variable
 
 
-def write_all(names: GroupNames, boxed: frozenset[int]) -> tuple[list[str], tuple[str, ...] | None]:
+def write_all(
+    names: GroupNames, boxed: frozenset[int], constants: dict[str, str]
+) -> tuple[list[str], tuple[str, ...] | None]:
     """Write the functions that test all pairs.
 
     Args:
         names: The identifiers of the group.
         boxed: The members that are bounded: `near_pairs` tests these on given pairs.
+        constants: See `ArrayWriter`.
 
     Returns:
         The lines, and the parameters of the functions; none where arrays will not do.
     """
     try:
-        whole = _All(names, frozenset()).write()
-        near = _All(names, boxed).write() if boxed else None
+        whole = _All(names, frozenset(), constants).write()
+        near = _All(names, boxed, constants).write() if boxed else None
     except NotVectorizableError:
         return [], None
     parameters = tuple(sorted(whole.used))
@@ -55,12 +62,14 @@ class _All:
     Args:
         names: The identifiers of the group.
         paired: The members that are tested on given pairs only.
+        constants: See `ArrayWriter`.
         lines: What has been written.
         used: The parameters.
     """
 
     names: GroupNames
     paired: frozenset[int]
+    constants: dict[str, str]
     lines: list[str] = field(default_factory=list)
     used: set[str] = field(default_factory=set)
 
@@ -71,7 +80,9 @@ class _All:
             NotVectorizableError: the tests must be computed in Python.
         """
         results: dict[int, str] = {}
-        self._derive()
+        derived = derived_of(self.names, self.constants)
+        self.lines += derived.lines
+        self.used.update(derived.given)
         known: tuple[dict[Expression, str], dict[Expression, str]] = ({}, {})
         views: dict[str, None] = {}
         for number, member in enumerate(self.names.members):
@@ -82,11 +93,11 @@ class _All:
         self.lines += views
         for is_paired in (False, True):
             tests = {
-                number: [_renamed_test(test, member) for test in member.kernel.paired]
+                number: renamed_tests(member)
                 for number, member in enumerate(self.names.members)
                 if member.order is None and (number in self.paired) is is_paired
             }
-            writer = ArrayWriter(known[is_paired], PLAIN)
+            writer = ArrayWriter(known[is_paired], PLAIN, self.constants)
             writer.share([test for each in tests.values() for test in each])
             found = {number: writer.conjunction(each) for number, each in tests.items()}
             self.lines += writer.lines
@@ -98,41 +109,13 @@ class _All:
         self.lines.append(f"return ({', '.join(results[n] for n in range(len(results)))},)")
         return self
 
-    def _derive(self) -> None:
-        """Write what is computed once an object.
-
-        Raises:
-            NotVectorizableError: it must be computed in Python.
-        """
-        columns: dict[Expression, str] = {}
-        derived: dict[str, Expression] = {}
-        for number, member in enumerate(self.names.members):
-            for word, side, _, type_ in member.sides():
-                of_side = {v: self.names.column(type_, a) for v, a in side.attributes}
-                for term, name in self.names.terms(number, word):
-                    if isinstance(term, Call) and not (member.mirrored and word == "right"):
-                        if is_guarded(term, PLAIN):
-                            raise NotVectorizableError
-                        derived[name] = _renamed(term, of_side)
-                        used = [of_side[v] for v in _inside(term)]
-                        columns |= {Variable(each): each for each in used}
-                        self.used.update(used)
-        writer = ArrayWriter(columns, PLAIN)
-        writer.share(list(derived.values()))
-        written = 0
-        for name, term in derived.items():
-            text = writer.number(term)
-            self.lines += writer.lines[written:]
-            written = len(writer.lines)
-            self.lines.append(f"{name} = {text}")
-
     def _input(
         self, number: int, place: int, known: dict[Expression, str], views: dict[str, None]
     ) -> list[str]:
         """Name the inputs of one side as tests read them."""
         member = self.names.members[number]
         word, side, _, type_ = member.sides()[place]
-        canonical = _canonical(side, type_, word)
+        of_side = canonical(side, type_, word)
         found = []
         for term, name in self.names.terms(number, word):
             if isinstance(term, Variable):
@@ -144,37 +127,6 @@ class _All:
             elif word == "left" and member.order is None:
                 text = f"{name}_upright"
                 views[f"{text} = {name}[:, None]"] = None
-            known[_renamed(term, canonical)] = text
+            known[renamed(term, of_side)] = text
             found.append(text)
         return found
-
-
-def _canonical(side: PairSide, type_: str, word: str) -> dict[str, str]:
-    """Give each variable of a side a name by what it stands for, alike in all rules."""
-    return {variable: f"?{type_} {attribute} {word}" for variable, attribute in side.attributes}
-
-
-def _renamed(expression: Expression, names: dict[str, str]) -> Expression:
-    if isinstance(expression, Variable):
-        return Variable(names.get(expression.name, expression.name))
-    if isinstance(expression, Call):
-        return Call(expression.function, tuple(_renamed(each, names) for each in expression.args))
-    return expression
-
-
-def _renamed_test(test: Call, member: Member) -> Call:
-    names: dict[str, str] = {}
-    for word, side, _, type_ in reversed(member.sides()):
-        names |= _canonical(side, type_, word)
-    found = _renamed(test, names)
-    assert isinstance(found, Call), "a call stays one"
-    return found
-
-
-def _inside(expression: Expression) -> list[str]:
-    """Give the variables in an expression."""
-    if isinstance(expression, Variable):
-        return [expression.name]
-    if isinstance(expression, Call):
-        return [name for each in expression.args for name in _inside(each)]
-    return []

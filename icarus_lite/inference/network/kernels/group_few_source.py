@@ -58,6 +58,8 @@ class _Few:
             if type_ == self._type and not (member.mirrored and word == "right")
         ]
         if rows:
+            if any(row[0] in self._boxed for row in rows):
+                add(f"    {', '.join(f'reach_{n}' for n in range(len(self._box)))}, = reach")
             add("    for slot in slots:")
             self._own(rows)
             boxed = [row for row in rows if row[0] in self._boxed]
@@ -105,7 +107,7 @@ class _Few:
         add = self.lines.append
         names = [self._names.column(self._type, bound.attribute) for bound in self._box]
         for place, name in enumerate(names):
-            own, reach = f"own_{name}", f"reach[{place}]"
+            own, reach = f"own_{name}", f"reach_{place}"
             add(f"        low_{place}, high_{place} = {own} - {reach}, {own} + {reach}")
         further = ""
         if len(names) == 2:

@@ -1,6 +1,7 @@
 """The generated code of a group: all pair rules that see the objects of one type.
 
-`follow` is for a few objects that have moved, `whole` and `near_pairs` are for many.
+`follow` is for a few objects that have moved, `whole` and `near_pairs` are for many, `flat` is for
+as many as there are where there are few.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from dataclasses import dataclass
 from icarus_lite.inference.network.kernels.columns import PLAIN
 from icarus_lite.inference.network.kernels.group_all_source import write_all
 from icarus_lite.inference.network.kernels.group_few_source import write_few
+from icarus_lite.inference.network.kernels.group_flat_source import FlatSource, write_flat
 from icarus_lite.inference.network.kernels.group_members import Bound, GroupNames, Member, box_of
 from icarus_lite.inference.network.kernels.ranges import is_guarded
 
@@ -27,6 +29,7 @@ class GroupSource:
         boxed: The members they bound.
         arrays: The parameters of `whole` and `near_pairs`, which are among the columns; None where
             arrays will not do.
+        flat: What is generated for all pairs laid out one after the other, likewise.
         may_warn: Whether `whole` may meet quotients or roots that do not exist.
     """
 
@@ -36,6 +39,7 @@ class GroupSource:
     box: tuple[Bound, ...]
     boxed: frozenset[int]
     arrays: tuple[str, ...] | None
+    flat: FlatSource | None
     may_warn: bool
 
 
@@ -54,14 +58,19 @@ def write_group(type_: str, members: Sequence[Member]) -> GroupSource:
         "",
         "",
     ]
+    constants: dict[str, str] = {}
     lines += write_few(type_, names, box, boxed)
-    together, parameters = write_all(names, boxed)
+    together, parameters = write_all(names, boxed, constants)
+    flat = write_flat(names, constants)
+    lines += [f"{name} = np.array({text})" for text, name in constants.items()]
+    lines += ["", "", *together, "", "", *(flat.lines if flat else ())]
     return GroupSource(
-        "\n".join([*lines, *together]) + "\n",
+        "\n".join(lines).rstrip() + "\n",
         {name: place for place, name in names.columns.items()},
         {name: place for place, name in names.inputs.items()},
         box,
         boxed,
         parameters,
+        flat,
         any(is_guarded(test, PLAIN) for each in members for test in each.kernel.paired),
     )

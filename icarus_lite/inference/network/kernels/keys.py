@@ -4,10 +4,18 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_left, bisect_right
+from collections.abc import Callable, Mapping, Sequence
+from typing import TypeAlias
 
 import numpy as np
 
 from icarus_lite.inference.network.kernels.columns import Numbers
+
+Cut: TypeAlias = Callable[[list[float], float], int]
+"""Gives the place of a key in ascending keys: `bisect_left` or `bisect_right`."""
+
+Passed: TypeAlias = list[tuple[int, list[int]]]
+"""Slots, each with those that it has passed."""
 
 _MANY = 64
 """From so many keys on numpy sorts faster."""
@@ -85,6 +93,46 @@ class Keys:
         place = bisect_right(ranked, key)
         ranked.insert(place, key)
         slots.insert(place, slot)
+
+    def move(
+        self,
+        slots: Sequence[int],
+        fresh: Mapping[int, float] | Sequence[float],
+        others: Keys,
+        cut: Cut,
+    ) -> tuple[Passed, Passed]:
+        """Give some slots new keys; give whom each has passed, upwards and downwards.
+
+        Args:
+            slots: The slots, each once.
+            fresh: Their keys, by slot.
+            others: The keys that they may pass; both orders must be up to date.
+            cut: Says where in the order of the others a key stands.
+        """
+        up: Passed = []
+        down: Passed = []
+        values, ranked, own, known = self.values, self.ranked, self.slots, others.ranked
+        last = len(ranked) - 1
+        for slot in slots:
+            key, before = fresh[slot], values[slot]
+            if key == before:
+                continue
+            old, new = cut(known, before), cut(known, key)
+            if new > old:
+                up.append((slot, others.slots[old:new]))
+            elif new < old:
+                down.append((slot, others.slots[new:old]))
+            place = bisect_left(ranked, before)
+            if (
+                own[place] == slot
+                and (not place or ranked[place - 1] <= key)
+                and (place == last or key <= ranked[place + 1])
+            ):
+                values[slot] = ranked[place] = key  # as `set` would: mostly it passes none
+            else:
+                self.set(slot, key)
+        self._array = None
+        return up, down
 
     def copy(self) -> Keys:
         """Give the same keys, to go on with apart from these."""

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_left, bisect_right
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,7 +20,7 @@ from icarus_lite.inference.network.kernels.columns import Columns, Numbers
 from icarus_lite.inference.network.kernels.costs import Costs
 from icarus_lite.inference.network.kernels.crossing import crossed, is_below, net
 from icarus_lite.inference.network.kernels.exact import ExactTest
-from icarus_lite.inference.network.kernels.keys import Keys
+from icarus_lite.inference.network.kernels.keys import Cut, Keys, Passed
 from icarus_lite.inference.network.kernels.relation import (
     Bind,
     Change,
@@ -29,9 +29,7 @@ from icarus_lite.inference.network.kernels.relation import (
     pairs_at,
 )
 from icarus_lite.inference.network.kernels.side import Side, SidePlan
-
-_Cut = Callable[[list[float], float], int]
-_Passed = list[tuple[int, list[int]]]
+from icarus_lite.inference.network.kernels.tester import Slots, Truths
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,21 +70,9 @@ class OrderRelation(PairRelation):
     """
 
     __slots__ = (
-        "_bind",
-        "_count",
-        "_distinct",
-        "_every",
-        "_exact",
-        "_held",
-        "_left",
-        "_left_keys",
-        "_odd",
-        "_plan",
-        "_right",
-        "_right_keys",
-        "_same",
-        "_strict",
-    )
+        "_bind", "_count", "_distinct", "_every", "_exact", "_held", "_left", "_left_keys", "_odd",
+        "_plan", "_right", "_right_keys", "_same", "_strict",
+    )  # fmt: skip
 
     def __init__(self, plan: OrderPlan, columns: tuple[Columns, Columns], bind: Bind) -> None:
         exact, gates = bind(columns)
@@ -221,10 +207,7 @@ class OrderRelation(PairRelation):
             f: (left,) what is compared of each left object.
             g: (right,) likewise of each right one.
         """
-        if not self._plan.ascending:
-            f, g = -f, -g
-        elif f.base is not None or g.base is not None:  # they belong to columns that will change
-            f, g = f.copy(), g.copy()
+        f, g = self._own_keys(f, g)
         size = len(f), len(g)
         if self._every is None or self._every[0] != size:
             costs = self._plan.costs
@@ -233,6 +216,32 @@ class OrderRelation(PairRelation):
         added, removed = self._by_matrix(f, g) if self._every[1] else self._by_sort(f, g)
         self._count += len(added) - len(removed)
         return added, removed
+
+    def taken(self, f: Numbers, g: Numbers, change: Change) -> Change:
+        """Take over new keys of all objects, see `replaced`, and the change that they make."""
+        f, g = self._own_keys(f, g)
+        self._held = None
+        self._left_keys.replace(f)
+        self._right_keys.replace(g)
+        self._count += len(change[0]) - len(change[1])
+        return change
+
+    def truths(self, left: Slots, right: Slots) -> Truths:
+        """Tell of some pairs of different objects whether each is in the relation.
+
+        Args:
+            left: (n,) the left slots.
+            right: (n,) the right slots.
+        """
+        f, g = self._left_keys.array().take(left), self._right_keys.array().take(right)
+        return is_below(f, g, strict=self._strict)
+
+    def _own_keys(self, f: Numbers, g: Numbers) -> tuple[Numbers, Numbers]:
+        if not self._plan.ascending:
+            return -f, -g
+        if f.base is not None or g.base is not None:  # they belong to columns that will change
+            return f.copy(), g.copy()
+        return f, g
 
     def _refresh(self, changed_left: Sequence[int], changed_right: Sequence[int]) -> None:
         self._left.refresh(changed_left)
@@ -263,6 +272,8 @@ class OrderRelation(PairRelation):
         before, gone = len(added), len(removed)
         cut = bisect_left if strict else bisect_right
         up, down = self._passed(self._right, changed_right, g, f, cut)
+        if not (up or down or added or removed):  # as in most cycles
+            return added, removed
         added += [(i, j) for j, others in up for i in others]
         removed += [(i, j) for j, others in down for i in others]
         if (before and len(removed) > gone) or (gone and len(added) > before):
@@ -270,23 +281,14 @@ class OrderRelation(PairRelation):
         return self._apart(added), self._apart(removed)
 
     def _passed(
-        self, side: Side, changed: Sequence[int], keys: Keys, others: Keys, cut: _Cut
-    ) -> tuple[_Passed, _Passed]:
+        self, side: Side, changed: Sequence[int], keys: Keys, others: Keys, cut: Cut
+    ) -> tuple[Passed, Passed]:
         """Give changed objects their new keys; give whom each has passed, upwards and downwards."""
-        up: _Passed = []
-        down: _Passed = []
-        fresh, values, ranked = side.ready_lists()[0], keys.values, others.ranked
-        is_plain = self._plan.ascending and side.is_regular
-        for slot in changed:
-            key = fresh[slot] if is_plain else self._key(side, fresh, slot, keys.none)
-            if key != values[slot]:
-                old, new = cut(ranked, values[slot]), cut(ranked, key)
-                if new > old:
-                    up.append((slot, others.slots[old:new]))
-                elif new < old:
-                    down.append((slot, others.slots[new:old]))
-                keys.set(slot, key)
-        return up, down
+        fresh = side.ready_lists()[0]
+        if self._plan.ascending and side.is_regular:
+            return keys.move(changed, fresh, others, cut)
+        turned = {slot: self._key(side, fresh, slot, keys.none) for slot in changed}
+        return keys.move(changed, turned, others, cut)
 
     def _apart(self, pairs: list[Pair]) -> list[Pair]:
         if not self._distinct or not pairs:
@@ -367,9 +369,14 @@ class OrderRelation(PairRelation):
             for j in (range(right.size) if i in left.odd else sorted(right.odd))
             if right.present[j]
         ]
-        return frozenset(pair for pair in pairs if self._is_exactly(*pair))
+        return frozenset(pair for pair in pairs if self.is_exactly(*pair))
 
-    def _is_exactly(self, left: int, right: int) -> bool:
+    def is_exactly(self, left: int, right: int) -> bool:
+        """Ask the exact test about a pair.
+
+        Raises:
+            InferenceError: it cannot be evaluated.
+        """
         is_one = self._distinct and self._is_one(left, right)
         if is_one and self._plan.distinct_first:
             return False

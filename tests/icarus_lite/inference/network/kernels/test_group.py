@@ -41,7 +41,7 @@ CONCEPTS = (
     *("left-of", "above", "near", "close", "on", "steep", "in-reach", "serves", "free", "pair"),
     *("crowd", "held"),
 )
-WAYS = ("few", "near", "whole", "alone", None)
+WAYS = ("few", "flat", "near", "whole", "alone", None)
 
 
 @pytest.fixture(scope="module")
