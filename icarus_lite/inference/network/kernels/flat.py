@@ -55,12 +55,15 @@ class FlatPairs:
         columns: For each array that these read its columns and attribute.
         types: The columns of each type that a plane names.
         relations: The relation of each member.
+
+    Attributes:
+        is_armed: Whether it is ready to follow.
     """
 
     __slots__ = (
         "_buffer", "_cells", "_changed", "_changing", "_columns", "_derive", "_flat", "_flat_over",
         "_given", "_held", "_index", "_moving", "_moving_given", "_pairs", "_places", "_relations",
-        "_sizes", "_source", "_types",
+        "_sizes", "_source", "_types", "is_armed",
     )  # fmt: skip
 
     def __init__(
@@ -76,6 +79,7 @@ class FlatPairs:
         self._flat_over: Callable[[Sequence[Row]], Test] = space["flat_over"]
         self._flat: Test = tuple
         self._columns, self._types, self._relations = columns, types, relations
+        self.is_armed = False
         self._sizes: list[tuple[int, int]] = []
         self._pairs: list[_Pairs] = []
         self._moving: list[tuple[Columns, str]] = []
@@ -93,9 +97,14 @@ class FlatPairs:
         """Rely no longer on what held last: relations have followed otherwise since."""
         self._held = [None] * len(self._relations)
 
+    def disarm(self) -> None:
+        """Be ready no longer. All pairs are many: they are laid out only if it is asked again."""
+        self.is_armed = False
+
     def arm(self, moved: Columns, attributes: Sequence[str]) -> None:
         """Be ready to follow moves of some objects, of which only these attributes change."""
         self.forget()
+        self.is_armed = True
         source = self._source
         names = [
             name

@@ -193,7 +193,10 @@ class PairGroup:
 
     def _follow_flat(self) -> Found:
         assert self._flat is not None, "it was chosen"
+        assert self._armed_for is not None, "it has been seen to"
         self._is_behind = True
+        if not self._flat.is_armed:
+            self._flat.arm(self._columns, self._armed_for)
         if self._program.source.may_warn:
             with np.errstate(all="ignore"):
                 self._found = self._flat.follow()
@@ -313,7 +316,7 @@ class PairGroup:
             for side in relation.sides:  # those of partners too: they are read as well
                 side.ready_lists()
         if self._flat is not None:
-            self._flat.arm(self._columns, attributes)
+            self._flat.disarm()
         self._set_reach()
         self._is_behind = True
         self._is_limiting = not self._limits.isdisjoint(attributes)
