@@ -43,12 +43,16 @@ class CellSource:
     Args:
         cell: The cell.
         wires: From the cell to the body.
+
+    Attributes:
+        gripped: What the gripper's sensor was told last.
+        time_s: The arm's clock at the last update, s.
     """
 
     def __init__(self, cell: Cell, wires: Wires) -> None:
         self._cell = cell
         self._wires = wires
-        self._gripped = False
+        self.gripped = False
         self._contact: Contact | None = None
         self.time_s = 0.0
 
@@ -56,9 +60,9 @@ class CellSource:
         """Move the scene to where the arm is, and let the arm feel what it does."""
         self.time_s = arm.timestamp_s
         gripped = self._cell.update(arm.joints, arm.gripper_closed, arm.force_n)
-        if gripped != self._gripped:
+        if gripped != self.gripped:
             self._wires.feel(gripped)
-            self._gripped = gripped
+            self.gripped = gripped
         if self._wires.touch is not None:
             contact = self._cell.contact()
             if contact is not self._contact:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Final
 
 from runtime.addresses import is_loopback
 from runtime.cell import Cell, CellParameters
@@ -15,9 +17,12 @@ from runtime.config import RobotConfig, load_robot
 from runtime.controller.bench_client import BenchClient
 from runtime.controller.process import ControllerProcess
 from runtime.drivers import Driver, DryRunDriver, UrDriver
-from runtime.errors import UsageError
+from runtime.errors import ControllerError, UsageError
 from runtime.kinematics import Joints
 from runtime.parts import PartModel, load_parts
+
+_FELT_WITHIN_S: Final = 5.0
+_FEEL_EVERY_S: Final = 0.01
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,7 +111,26 @@ def open_workplace(
         body = _body(stack, config, parts, address, setting, log)
         stack.callback(body.driver.close)
         source = CellSource(cell, body.wires)
+        if setting.gripper_closed:
+            _feel_first(body.driver, source)
         yield Workplace(body.driver, source, cell, body.words, body.controller)
+
+
+def _feel_first(driver: Driver, source: CellSource) -> None:
+    """Wait until the gripper's sensor shows what closed fingers hold, before anybody looks.
+
+    Raises:
+        ControllerError: the sensor does not show it.
+    """
+    source.update(driver.state())
+    deadline = time.monotonic() + _FELT_WITHIN_S
+    while driver.state().gripped != source.gripped:
+        if time.monotonic() > deadline:
+            raise ControllerError(
+                "the gripper's sensor does not show what the fingers hold; is the controller "
+                "overloaded?"
+            )
+        time.sleep(_FEEL_EVERY_S)
 
 
 @dataclass(frozen=True, slots=True)
