@@ -10,7 +10,8 @@ e. nothing explains the miss: its confidence falls, and below 0 it is removed.
 
 An action done on an object shows that it exists, so that one named in the attachments never
 falls under a. And an object may only hide another if its own presence is explained without that
-other: two vanished things do not keep each other alive.
+other: two vanished things do not keep each other alive. But a detector blinks: what it saw up to
+`blink` frames ago may hide others, though nothing explains that it is not seen now.
 
 Source: Liang et al. 2021, section III-B 1 (hypothesis reasoning with attachment hierarchy).
 """
@@ -184,6 +185,7 @@ def _grounds(
     standing = {anchor.name for anchor in seen} if parents else set()
     grounds: dict[str, _Ground] = {}
     front = Occluders(seen, view)
+    blink = view.parameters.blink
     while pending and (front or not grounds):
         attached = {a.name for a in pending if parents.get(a.name) in standing} if parents else ()
         asked = [a for a in pending if outside[a.name] is None and a.name not in attached]
@@ -200,13 +202,18 @@ def _grounds(
                 found[anchor.name] = _Ground(AnchorStatus.OUT_OF_VIEW, reason)
             elif (occluder := occluder_of[anchor.name]) is not None:
                 found[anchor.name] = _Ground(AnchorStatus.OCCLUDED, occluded_by(occluder))
-        if not found:
-            break
-        # The next round asks only about what this one has added: the rest has been asked.
-        front = Occluders([placed[name] for name in found], view)
-        standing.update(found)
         grounds.update(found)
-        pending = [anchor for anchor in pending if anchor.name not in found]
+        # The next round asks only about what this one has added: the rest has been asked.
+        added = {name: placed[name] for name in found}
+        if not added:
+            # Last of all, so that what is explained keeps its explanation; and once.
+            added = {a.name: a for a in pending if min(a.streak, 0) > -blink}
+            blink = 0
+        if not added:
+            break
+        front = Occluders(list(added.values()), view)
+        standing.update(added)
+        pending = [anchor for anchor in pending if anchor.name not in added]
     return grounds
 
 

@@ -55,6 +55,9 @@ class AnchoringParameters:
             in [0, 1]. Default 0.3.
         min_report_confidence: The confidence from which on anchors are returned, in [0, 1].
             Default 0.1.
+        blink: For how many frames in a row the detector may miss what stands in front of something
+            else, without an explanation, before it is held to hide it no longer; at least 0.
+            Default 0: it has to be seen, or its absence explained, in the very frame.
         margin_px: Two boxes closer than this overlap, and a box closer than this to the border
             reaches out of the image, px, at least 0. Default 2.
         unique_types: Types of which one object is expected: the first is named by the bare
@@ -87,6 +90,7 @@ class AnchoringParameters:
     initial_confidence: float = 0.1
     min_anchor_confidence: float = 0.3
     min_report_confidence: float = 0.1
+    blink: int = 0
     margin_px: float = 2.0
     unique_types: frozenset[str] = frozenset()
     reunite_after: int | None = None
@@ -106,6 +110,10 @@ class AnchoringParameters:
                 raise AnchoringError(f"{name} is {getattr(self, name)!r}; it has to be within 0…1")
         if _number("margin_px", self.margin_px) < 0:
             raise AnchoringError(f"margin_px is {self.margin_px!r}; it has to be at least 0 px")
+        if not _is_count(self.blink, 0):
+            raise AnchoringError(
+                f"blink is {self.blink!r}; it has to be a whole number of frames, at least 0"
+            )
         if not isinstance(self.use_attachments, bool):
             raise AnchoringError(
                 f"use_attachments is {self.use_attachments!r}; it has to be true or false"
@@ -203,8 +211,8 @@ def _is_set_of_names(value: object) -> bool:
     return isinstance(value, frozenset) and all(isinstance(name, str) and name for name in value)
 
 
-def _is_count(value: object) -> bool:
-    return isinstance(value, int) and not isinstance(value, bool) and value >= 1
+def _is_count(value: object, least: int = 1) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool) and value >= least
 
 
 def _is_image_size(value: object) -> bool:

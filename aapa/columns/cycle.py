@@ -50,6 +50,7 @@ def suits(parameters: AnchoringParameters, register: NameRegister) -> bool:
         and parameters.comparison is CENTRE
         and parameters.position_gain == 1
         and not parameters.sure_score
+        and not parameters.blink
         and (parameters.reunite_after is None or not parameters.unique_types)
         and type(parameters.initial_confidence) is float
         and not register.bodies

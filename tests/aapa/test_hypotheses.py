@@ -138,6 +138,39 @@ def test_what_is_too_uncertain_hides_nothing():
     assert {thing.status for thing in kept.values()} == {AnchorStatus.MISSING}
 
 
+BLINKING = View(AnchoringParameters(image_size=(320, 240), blink=2))
+
+
+@pytest.mark.parametrize(("streak", "hides"), [(7, True), (-1, True), (-2, False), (-9, False)])
+def test_what_the_detector_misses_for_a_moment_still_hides(streak, hides):
+    lid = dataclasses.replace(anchor("lid", 105), streak=streak)
+    kept, _ = explained([dataclasses.replace(anchor("box"), streak=-50), lid], view=BLINKING)
+    assert kept["lid"].status is AnchorStatus.MISSING
+    assert kept["lid"].confidence < 1
+    if hides:
+        assert kept["box"].reason == "lid stands in front of it."
+        assert kept["box"].confidence == 1
+    else:
+        assert kept["box"].status is AnchorStatus.MISSING
+
+
+def test_a_lid_that_is_attached_to_what_it_hides_may_be_missed_for_a_moment():
+    lid = dataclasses.replace(anchor("lid", 105), streak=3)
+    box = dataclasses.replace(anchor("box"), streak=-50)
+    kept, _ = explained([box, lid], parents={"lid": "box"}, view=BLINKING)
+    assert (kept["box"].status, kept["lid"].status) == (
+        AnchorStatus.OCCLUDED,
+        AnchorStatus.ATTACHED,
+    )
+    assert {thing.confidence for thing in kept.values()} == {1}
+
+
+def test_two_that_are_missed_at_once_do_not_hide_each_other():
+    lost = [dataclasses.replace(anchor(name), streak=3) for name in ("a", "b")]
+    kept, _ = explained(lost, [anchor("cone", 10)], view=BLINKING)
+    assert {thing.status for thing in kept.values()} == {AnchorStatus.MISSING}
+
+
 def test_what_an_unseen_parent_carries_may_hide_the_next():
     lost = [anchor("a", 200), anchor("case", 100), anchor("plug", 190)]
     parents = {"plug": "case", "case": "hand"}
