@@ -100,13 +100,14 @@ class Table:
             slots = self._last_slots = [known[name] for name in names]
             self._last_first = first_of_run(slots)
         slots, columns = self._last_slots, self.objects.columns
-        places, numeric = columns.places, []
-        for attribute, values in moved.items():
-            if attribute in places:
-                numeric.append((places[attribute], values))
-            elif attribute in self._others:
+        places = columns.places
+        try:  # mostly all of them are numeric
+            numeric = [(places[attribute], values) for attribute, values in moved.items()]
+        except KeyError:
+            numeric = [(places[each], values) for each, values in moved.items() if each in places]
+            for attribute in moved.keys() & self._others.keys():
                 column = self._others[attribute]
-                for slot, value in zip(slots, values, strict=True):
+                for slot, value in zip(slots, moved[attribute], strict=True):
                     column[slot] = value
         columns.assign(slots, numeric, self._last_first, plain=plain)
         if not plain or columns.unusual:

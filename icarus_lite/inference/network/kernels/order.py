@@ -263,8 +263,9 @@ class OrderRelation(PairRelation):
         """Find the partners between the old and the new key, left objects first."""
         self._held = None
         f, g, strict = self._left_keys, self._right_keys, self._strict
-        f.rank()
-        g.rank()
+        if not (f.is_ranked and g.is_ranked):
+            f.rank()
+            g.rank()
         cut = bisect_right if strict else bisect_left
         up, down = self._passed(self._left, changed_left, f, g, cut)
         removed: list[Pair] = [(i, j) for i, others in up for j in others]

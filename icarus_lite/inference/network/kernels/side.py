@@ -131,7 +131,7 @@ class Side:
     @property
     def is_regular(self) -> bool:
         """Whether every slot has a present object that the kernels may be trusted with."""
-        return not self.absent and not self.odd
+        return not (self.absent or self.odd)
 
     def refresh(self, changed: Sequence[int]) -> None:
         """Follow the columns.
