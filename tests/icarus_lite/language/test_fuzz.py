@@ -110,9 +110,16 @@ SLOW = {
 }
 
 
+_MORE_TRIES = 4
+
+
 @pytest.mark.parametrize("text", SLOW.values(), ids=SLOW.keys())
 def test_ten_times_the_text_takes_about_ten_times_as_long(text):
     seconds("(goals (a))")  # the parser is built once
     small, large = seconds(text(6_000)), seconds(text(60_000))
     # Quadratic time would be a hundredfold; the constant absorbs what is too short to measure.
+    for _ in range(_MORE_TRIES):  # a machine that others use as well is slow at times
+        if large < 25 * small + 0.3:
+            break
+        large = min(large, seconds(text(60_000)))
     assert large < 25 * small + 0.3
