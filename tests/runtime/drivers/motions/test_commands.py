@@ -89,6 +89,18 @@ def test_a_grasp_goes_over_the_part_and_down_and_closes(config, parts, scene, ar
     assert close.centre_of_gravity_m == pytest.approx((0.0, 0.0, 0.06))
 
 
+@pytest.mark.parametrize(("wrong_m", "as_seen"), [(0.0035, False), (-0.0035, False), (0.02, True)])
+def test_a_part_on_the_table_is_gripped_where_it_stands_however_it_is_seen(
+    config, parts, scene, arm_at, wrong_m, as_seen
+):
+    """How deep it is pressed home later is reckoned from where it was gripped."""
+    stands = config.workspace.table_z_m + parts["hubcover"].size[2] / 2
+    seen = scene(hubcover=(0.42, -0.10, stands + wrong_m))
+    _, _, down, _ = plan_motion((GRASP,), seen, arm_at(), config, parts)
+    height = stands + (wrong_m if as_seen else 0.0) + parts["hubcover"].grasp_height_m
+    assert down.pose[2] == pytest.approx(height)
+
+
 def test_the_tool_stays_turned_as_it_is_at_the_look_pose(config, parts, scene, arm_at):
     _, _, down, _ = plan_motion((GRASP,), scene(), arm_at(), config, parts)
     looking = tcp_matrix(config, config.look_joints)[:3, :3]
