@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
 
 from icarus_lite.errors import FrameError
 from icarus_lite.execution import (
@@ -51,6 +50,7 @@ from icarus_lite.language.fragments import parse_atom, parse_conditions
 from icarus_lite.language.syntax import Atom, Condition, Constant, Domain
 from icarus_lite.language.teams import domain_of
 from icarus_lite.language.wording import closest, listing
+from icarus_lite.records import dataclass, replace
 from icarus_lite.symbols import Belief, Outcome, Percept, is_number
 
 __all__ = [

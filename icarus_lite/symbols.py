@@ -8,10 +8,11 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from enum import StrEnum
 from types import MappingProxyType
 from typing import TypeAlias
+
+from icarus_lite.records import dataclass, field
 
 Value: TypeAlias = str | int | float
 """What a variable may be bound to: a symbol (or string), an integer or a float."""

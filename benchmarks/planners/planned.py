@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from icarus_lite.inference import InferenceEngine, given_memory, given_percepts
@@ -14,6 +13,7 @@ from icarus_lite.language.syntax import Domain
 from icarus_lite.planning import Imagination
 from icarus_lite.planning.ground_task import GroundTask
 from icarus_lite.planning.grounding import PlanningDomain, ground_goals
+from icarus_lite.records import dataclass
 
 if TYPE_CHECKING:
     from pathlib import Path

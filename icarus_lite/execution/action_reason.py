@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from icarus_lite.execution.decision import Decision
 from icarus_lite.planning import Purpose, purpose
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Action
 
 

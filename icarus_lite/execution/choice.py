@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-
 from icarus_lite.execution.decision import DecisionKind
 from icarus_lite.execution.path import SkillPath
 from icarus_lite.execution.plan_following import PlanStatus
 from icarus_lite.execution.requests import Request
 from icarus_lite.planning import Candidate, Failure, PlanStep
+from icarus_lite.records import dataclass, replace
 
 
 @dataclass(frozen=True, slots=True)

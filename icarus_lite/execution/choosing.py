@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import replace
 
 from icarus_lite.execution.experience import Experience
 from icarus_lite.execution.moment import Moment
@@ -12,6 +11,7 @@ from icarus_lite.execution.selection import Selection
 from icarus_lite.inference import change_of
 from icarus_lite.language.syntax import Atom, Condition, Constant
 from icarus_lite.planning import FailureReason, NoPlan, PlanningDomain, PlanStep, find_plan
+from icarus_lite.records import replace
 from icarus_lite.symbols import Action
 
 

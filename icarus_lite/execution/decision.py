@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import StrEnum
 
 from icarus_lite.execution.path import SkillPath
@@ -11,6 +10,7 @@ from icarus_lite.execution.requests import Request
 from icarus_lite.inference import BeliefState, Withdrawal
 from icarus_lite.language.syntax import Atom, Condition
 from icarus_lite.planning import Candidate, Failure, PlanStep
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Action, Belief
 
 

@@ -8,7 +8,6 @@ then followed as long as its next step can start.
 from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
-from dataclasses import replace
 
 from icarus_lite.execution.choice import Choice
 from icarus_lite.execution.choosing import obstacle, path_to_goals, path_to_skill
@@ -37,6 +36,7 @@ from icarus_lite.planning import (
     find_plan,
     plan_step,
 )
+from icarus_lite.records import replace
 from icarus_lite.symbols import Action, Outcome
 
 

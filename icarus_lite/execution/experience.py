@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Hashable, Iterable
-from dataclasses import dataclass
 
 from icarus_lite.execution.path import Bound, Level
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Action
 
 MAX_ATTEMPTS = 3

@@ -12,13 +12,13 @@ environments, executes a step each cycle, and beliefs alone tell when it is done
 from __future__ import annotations
 
 from collections.abc import Hashable
-from dataclasses import dataclass
 from enum import Enum, auto
 
 from icarus_lite.execution.effects import missing_effect
 from icarus_lite.execution.moment import Moment
 from icarus_lite.execution.repertoire import Skill
 from icarus_lite.planning import Failure, FailureReason, PlanStep
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Outcome, Status
 
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TypeAlias
 
 from icarus_lite.inference import bind_pattern
 from icarus_lite.language.syntax import Atom, Condition, SkillClause
 from icarus_lite.planning import PlanStep
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Value
 
 Bound: TypeAlias = tuple[tuple[str, Value], ...]

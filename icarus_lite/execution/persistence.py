@@ -10,7 +10,6 @@ as it is now (reactivity). So the new path shares with the old one all that can 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
 
 from icarus_lite.execution.moment import Moment
 from icarus_lite.execution.path import Level, as_bound
@@ -18,6 +17,7 @@ from icarus_lite.execution.repertoire import Repertoire, passed_back
 from icarus_lite.execution.selection import Selection
 from icarus_lite.inference import FactStore
 from icarus_lite.planning import Failure, FailureReason
+from icarus_lite.records import dataclass, replace
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,6 @@ Source: triangle tables and their kernels (Fikes, Hart and Nilsson 1972) say whi
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass, replace
 from enum import StrEnum
 
 from icarus_lite.execution.moment import Moment
@@ -31,6 +30,7 @@ from icarus_lite.planning import (
     with_links,
     working_rest,
 )
+from icarus_lite.records import dataclass, replace
 from icarus_lite.symbols import Action, Belief
 
 MOST_NAMED = 3

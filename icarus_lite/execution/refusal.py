@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 from icarus_lite.execution.effects import missing_effect
 from icarus_lite.execution.path import Bound
 from icarus_lite.execution.repertoire import Skill
 from icarus_lite.inference import Evaluator, FactStore, bind_pattern, first_obstacle
 from icarus_lite.planning import Candidate, Failure, FailureReason
+from icarus_lite.records import dataclass
 
 MOST_SHOWN = 8
 """How many refusals are put into words; a deep recursion can have hundreds, all alike."""

@@ -7,14 +7,13 @@ until the other one is reported to have done it. A refusal, or no answer in time
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from icarus_lite.execution.moment import Moment
 from icarus_lite.execution.monitoring import Execution, Fate, Judgement, broken
 from icarus_lite.execution.plan_following import PlanStatus
 from icarus_lite.execution.repertoire import Skill
 from icarus_lite.language.teams import performer, sentence
 from icarus_lite.planning import Failure, FailureReason, PlanStep, validate
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Action, Outcome, Status
 
 NO_ANSWER = "no answer"

@@ -9,7 +9,6 @@ the same beliefs always give the same path.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from functools import partial
 from typing import TypeAlias
 
@@ -21,6 +20,7 @@ from icarus_lite.execution.repertoire import Repertoire, Skill, passed_back, pas
 from icarus_lite.inference import Bindings, change_of, match, unify
 from icarus_lite.language.syntax import Atom, Condition, Constant
 from icarus_lite.planning import Failure, FailureReason, plan_step
+from icarus_lite.records import replace
 from icarus_lite.symbols import Value
 
 MAX_DEPTH = 1_000

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass
 
 from icarus_lite.execution import GoalReport, Moment, Standing
 from icarus_lite.goals.blockade import Blockade
 from icarus_lite.goals.goal import Goal
+from icarus_lite.records import dataclass
 
 _REMOVED = "it was removed"
 _LAPSED = "it no longer matters"

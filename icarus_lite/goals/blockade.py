@@ -9,11 +9,11 @@ change all the time; they count where they change a belief or let a skill start.
 from __future__ import annotations
 
 from collections.abc import Hashable
-from dataclasses import dataclass
 
 from icarus_lite.execution import Moment
 from icarus_lite.language.syntax import Condition, Domain, SkillClause
 from icarus_lite.planning import Failure, relevance
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Belief
 
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
 
 from icarus_lite.language.syntax import Condition, Term, Variable
+from icarus_lite.records import dataclass, replace
 
 
 @dataclass(frozen=True, slots=True)

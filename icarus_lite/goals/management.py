@@ -15,7 +15,6 @@ Source: Choi (2011), reactive goal management in ICARUS, for nomination and prio
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 
 from icarus_lite.execution import Choice, DecisionKind, Executor, GoalReport, Moment
 from icarus_lite.goals.agenda import Agenda, Entry, report
@@ -24,6 +23,7 @@ from icarus_lite.goals.nomination import Nominator
 from icarus_lite.goals.pursuit import MAX_UNDONE, Pursuit
 from icarus_lite.language.syntax import Domain
 from icarus_lite.planning import Failure, FailureReason
+from icarus_lite.records import replace
 from icarus_lite.symbols import Outcome
 
 SWITCHING_MARGIN = 1.0

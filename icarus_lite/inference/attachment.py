@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 
 from icarus_lite.inference.effects import Change
 from icarus_lite.inference.facts import resolve, unify
 from icarus_lite.language.syntax import Atom, AttachmentRule
+from icarus_lite.records import dataclass, field
 from icarus_lite.symbols import Action, Belief, Value
 
 ATTACHED = "attached"

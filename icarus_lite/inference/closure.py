@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from functools import partial
 
 from icarus_lite.inference.canonical import canonical
@@ -14,6 +13,7 @@ from icarus_lite.inference.rules import Rule
 from icarus_lite.inference.supports import Support
 from icarus_lite.language.checking.stratification import recursive_concepts, strata
 from icarus_lite.language.syntax import ConceptClause
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Belief
 
 

@@ -11,13 +11,13 @@ calls it contraction); what rested on the belief goes with it, as in truth maint
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 from icarus_lite.inference.canonical import canonical
 from icarus_lite.inference.facts import Bindings, FactStore, match
 from icarus_lite.inference.matching import Evaluator, Match
 from icarus_lite.inference.supports import Assertion, Literal, Support, bind_literal
 from icarus_lite.language.syntax import Contradiction
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Belief, Value
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from icarus_lite.errors import FrameError
@@ -28,6 +27,7 @@ from icarus_lite.inference.supports import Assertion, Support
 from icarus_lite.language.checking.stratification import strata
 from icarus_lite.language.percept_types import lineages
 from icarus_lite.language.syntax import Domain
+from icarus_lite.records import dataclass, field
 from icarus_lite.symbols import Belief, Outcome, Percept, Status
 
 if TYPE_CHECKING:

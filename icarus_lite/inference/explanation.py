@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
 
 from icarus_lite.inference.contradictions import Doubt, Withdrawal
 from icarus_lite.inference.engine import BeliefState
@@ -20,6 +19,7 @@ from icarus_lite.inference.explaining.grounds import well_founded
 from icarus_lite.inference.explaining.reasons import because
 from icarus_lite.inference.supports import Assertion, Derivation, Support
 from icarus_lite.language.syntax import Atom
+from icarus_lite.records import dataclass, replace
 from icarus_lite.symbols import Action, Belief, Percept
 
 _PERIODS_TOLD = 5

@@ -17,7 +17,6 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from enum import Enum
 from operator import itemgetter
 from typing import TypeAlias
@@ -27,6 +26,7 @@ from icarus_lite.inference.facts import FactStore
 from icarus_lite.inference.views import Entry, Key, Row, View, key_getter, row_getter
 from icarus_lite.language.functions import PythonFunctions
 from icarus_lite.language.syntax import Atom, Call, Constant, Term
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Value
 
 _number = itemgetter(2)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TypeAlias
 
 from icarus_lite.inference.attachment import ATTACHED, Hierarchy, Link
 from icarus_lite.inference.supports import Assertion, Support
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Belief, Value
 
 Given: TypeAlias = Mapping[Belief, tuple[Support, ...]]

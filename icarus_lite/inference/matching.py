@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from icarus_lite.inference.facts import Bindings, FactStore
@@ -11,6 +10,7 @@ from icarus_lite.inference.join import Conjunction, Plan, compile_plan
 from icarus_lite.inference.views import row_getter
 from icarus_lite.language.functions import evaluate
 from icarus_lite.language.syntax import Atom, Call, Condition, Expression, Variable
+from icarus_lite.records import dataclass, field
 from icarus_lite.symbols import Belief, Value
 
 Functions: TypeAlias = Mapping[str, Callable[..., Value | bool]]

@@ -7,7 +7,6 @@ candidates, a domain test that failed. The whole answer is in `explaining`.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from icarus_lite.inference.explaining.attempts import nearest_attempt
 from icarus_lite.inference.explaining.diagnosis import nearest_beliefs
@@ -16,6 +15,7 @@ from icarus_lite.inference.facts import Bindings, FactStore
 from icarus_lite.inference.matching import Evaluator
 from icarus_lite.inference.supports import Literal
 from icarus_lite.language.syntax import Atom, Call, ConceptClause, Condition, SkillClause
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Belief
 
 __all__ = ["NearMiss", "Obstacle", "first_obstacle", "near_misses", "nearest_beliefs"]

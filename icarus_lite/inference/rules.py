@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
 
 from icarus_lite.errors import InferenceError
 from icarus_lite.inference.expressions import compile_bind
@@ -13,6 +12,7 @@ from icarus_lite.inference.matching import Evaluator, Matcher
 from icarus_lite.inference.supports import Derivation, bind_pattern
 from icarus_lite.inference.views import Entry, Row, row_getter
 from icarus_lite.language.syntax import Atom, ConceptClause, Constant, Variable
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Belief, Value
 
 

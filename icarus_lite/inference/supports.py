@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import TypeAlias
 
 from icarus_lite.language.syntax import (
@@ -16,6 +15,7 @@ from icarus_lite.language.syntax import (
     Term,
     Variable,
 )
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Action, Belief, Value
 
 

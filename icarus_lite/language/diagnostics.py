@@ -8,12 +8,12 @@ from __future__ import annotations
 import functools
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from enum import StrEnum
 from types import MappingProxyType
 
 from icarus_lite.errors import IcarusError
 from icarus_lite.language.syntax import Source, Span
+from icarus_lite.records import dataclass
 
 CODES: Mapping[str, str] = MappingProxyType(
     {

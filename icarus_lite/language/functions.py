@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from enum import StrEnum
 from types import MappingProxyType
 from typing import TypeAlias
 
 from icarus_lite.errors import InferenceError
 from icarus_lite.language.syntax import Call, Constant, Expression, Span, Variable
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Value, format_value, is_number
 
 PythonFunctions: TypeAlias = Mapping[str, Callable[..., Value | bool]]

@@ -7,9 +7,10 @@ where is the grammar's business; that none is missing here is a test's.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from enum import Enum, auto
 from types import MappingProxyType
+
+from icarus_lite.records import dataclass
 
 
 class Content(Enum):

@@ -5,10 +5,10 @@ Spans never take part in comparison, so two trees are equal when they mean the s
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import TypeAlias
 
+from icarus_lite.records import dataclass, field
 from icarus_lite.symbols import Value, format_value
 
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import replace
 
 from icarus_lite.language.checking.agents import known_agents, variables_of_request
 from icarus_lite.language.syntax import Call, Constant, Domain, SkillClause, Variable
+from icarus_lite.records import replace
 from icarus_lite.symbols import Value
 
 OWN_COST = 1

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from icarus_lite.planning.search import Effort, Progress
 from icarus_lite.planning.subgoals import Subgoal
+from icarus_lite.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 from icarus_lite.inference.near_miss import near_misses
 from icarus_lite.language.syntax import Condition, Domain
 from icarus_lite.planning.plan import NoPlan, Plan
 from icarus_lite.planning.relevance import relevance
 from icarus_lite.planning.situation import Imagination
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Action
 
 

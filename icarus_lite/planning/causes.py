@@ -13,11 +13,11 @@ a rest of a plan needs are the kernels of a triangle table (Fikes, Hart and Nils
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
 from itertools import chain
 
 from icarus_lite.inference import FactStore
 from icarus_lite.language.syntax import Atom, Condition, Constant
+from icarus_lite.records import dataclass, field, replace
 from icarus_lite.symbols import Belief
 
 

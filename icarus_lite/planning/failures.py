@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import StrEnum
+
+from icarus_lite.records import dataclass
 
 
 class FailureReason(StrEnum):

@@ -8,10 +8,10 @@ condition wants false has a second bit, its complement, so that all conditions a
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import TypeAlias
 
 from icarus_lite.planning.situation import PlanStep
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Belief
 
 State: TypeAlias = int

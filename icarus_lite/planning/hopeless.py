@@ -9,7 +9,6 @@ person would have expected to work.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from icarus_lite.inference import ATTACHED, Evaluator, FactStore, first_obstacle, unify
 from icarus_lite.language.syntax import (
@@ -26,6 +25,7 @@ from icarus_lite.language.syntax import (
 from icarus_lite.planning.grounding import Grounding
 from icarus_lite.planning.relevance import can_change, relevance
 from icarus_lite.planning.situation import Imagination
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Value
 
 _DEEPEST = 4

@@ -7,7 +7,6 @@ effects and derived concepts are treated as the engine treats them.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 
 from icarus_lite.inference import Derivation, FactStore, Matcher, bind_pattern, match
 from icarus_lite.language.syntax import Atom, Condition, Constant, Variable
@@ -16,6 +15,7 @@ from icarus_lite.planning.naming import objects_of
 from icarus_lite.planning.plan import Plan
 from icarus_lite.planning.projection import Projection, Stage
 from icarus_lite.planning.situation import Imagination
+from icarus_lite.records import replace
 from icarus_lite.symbols import Belief, Value
 
 MOST_ALTERNATIVES = 8

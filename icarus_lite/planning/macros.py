@@ -14,7 +14,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 
 from icarus_lite.inference import Derivation, Support
 from icarus_lite.language.formatting.formatter import format_text
@@ -34,6 +33,7 @@ from icarus_lite.planning.causes import Requirement, pattern_of
 from icarus_lite.planning.plan import Plan
 from icarus_lite.planning.projection import Stage
 from icarus_lite.planning.situation import PlanStep
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Value
 
 _UNFIT = re.compile(r"[^\w-]+", re.ASCII)

@@ -16,11 +16,11 @@ goals after interference as in Sussman 1975.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from icarus_lite.planning.ground_task import GroundTask, State
 from icarus_lite.planning.search.relaxed_plan import FAR, Relaxation
 from icarus_lite.planning.subgoals import Ending, Subgoal, Way
+from icarus_lite.records import dataclass
 
 MAX_DEPTH = 60
 """Subgoals below one another."""

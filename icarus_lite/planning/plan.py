@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
 
 from icarus_lite.language.syntax import Condition
 from icarus_lite.planning.account import Account
 from icarus_lite.planning.causes import CausalLink, Needs, Requirement
 from icarus_lite.planning.failures import FailureReason
 from icarus_lite.planning.situation import PlanStep
+from icarus_lite.records import dataclass, field, replace
 
 
 @dataclass(frozen=True, slots=True)

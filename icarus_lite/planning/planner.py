@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import replace
 
 from icarus_lite.inference import FactStore
 from icarus_lite.language.syntax import Condition, Constant, Domain
@@ -16,6 +15,7 @@ from icarus_lite.planning.relevance import relevance
 from icarus_lite.planning.search import Limits, SearchResult
 from icarus_lite.planning.situation import Imagination
 from icarus_lite.planning.solving import solve
+from icarus_lite.records import replace
 from icarus_lite.symbols import Action
 
 DEFAULT_LIMIT = 5_000

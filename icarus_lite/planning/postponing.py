@@ -5,11 +5,10 @@ An agent that waits keeps still, so what it can do first, it does first.
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from icarus_lite.planning.plan import Plan
 from icarus_lite.planning.projection import validate
 from icarus_lite.planning.situation import Imagination
+from icarus_lite.records import replace
 
 
 def postponed(imagination: Imagination, plan: Plan) -> Plan:

@@ -7,12 +7,12 @@ the beliefs of now: see `Imagination`.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 from icarus_lite.inference import ATTACHED, FactStore, Support, first_obstacle
 from icarus_lite.language.syntax import Condition
 from icarus_lite.planning.naming import objects_of
 from icarus_lite.planning.situation import Imagination, PlanStep, Situation
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Belief
 
 

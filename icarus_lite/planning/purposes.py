@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from icarus_lite.planning.causes import CausalLink
 from icarus_lite.planning.plan import Plan
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Action
 
 

@@ -8,11 +8,11 @@ sign only, so what they leave out can never help.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from typing import TypeAlias
 
 from icarus_lite.inference import ATTACHED
 from icarus_lite.language.syntax import Condition, Domain, SkillClause
+from icarus_lite.records import dataclass
 
 Sign: TypeAlias = tuple[str, bool]
 """A predicate, and whether it is to become true or false."""

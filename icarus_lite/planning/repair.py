@@ -7,7 +7,6 @@ trusted after a surprise is carried out in the mind as well.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Sequence
-from dataclasses import dataclass
 
 from icarus_lite.inference import FactStore
 from icarus_lite.planning.causes import Requirement
@@ -15,6 +14,7 @@ from icarus_lite.planning.links import with_links
 from icarus_lite.planning.plan import Plan
 from icarus_lite.planning.projection import Projection, project, rebound
 from icarus_lite.planning.situation import Imagination, PlanStep
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Action
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 from icarus_lite.inference import (
@@ -23,6 +22,7 @@ from icarus_lite.inference import (
 )
 from icarus_lite.language.syntax import Condition, Domain, SkillClause
 from icarus_lite.planning.layers import LayeredFacts, fluents_of
+from icarus_lite.records import dataclass, replace
 from icarus_lite.symbols import Action, Belief, Value
 
 

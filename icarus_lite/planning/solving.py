@@ -7,8 +7,6 @@ everything near the start tells whether a shorter one exists; elsewhere search i
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-
 from icarus_lite.planning.account import Account
 from icarus_lite.planning.ground_task import GroundTask
 from icarus_lite.planning.means_ends import MAX_SUBGOALS, means_ends
@@ -16,6 +14,7 @@ from icarus_lite.planning.search import Limits, SearchResult, improve, search
 from icarus_lite.planning.search.elimination import without_needless_steps
 from icarus_lite.planning.search.relaxed_plan import Relaxation
 from icarus_lite.planning.shortest import shorter_plan
+from icarus_lite.records import dataclass, replace
 
 _CHECKS = 100
 """Operators looked at breadth first in the time that it takes to judge a situation."""

@@ -8,7 +8,6 @@ does without it, and costs less? Where the problem is small, the cheapest plan i
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Sequence
-from dataclasses import replace
 from typing import TypedDict, Unpack
 
 from icarus_lite.language.syntax import Condition, Domain
@@ -19,6 +18,7 @@ from icarus_lite.planning.grounding import PlanningDomain, ground_goals
 from icarus_lite.planning.plan import NoPlan, Plan
 from icarus_lite.planning.postponing import postponed
 from icarus_lite.planning.situation import Imagination, PlanStep
+from icarus_lite.records import replace
 from icarus_lite.symbols import Action
 
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import StrEnum
 
 from icarus_lite.language.syntax import DomainTest, Span
+from icarus_lite.records import dataclass
 
 
 class Kind(StrEnum):

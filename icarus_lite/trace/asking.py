@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from itertools import groupby
 
 from icarus_lite.errors import FrameError
@@ -11,6 +10,7 @@ from icarus_lite.inference import Period, Withdrawal, match, percept_facts, what
 from icarus_lite.language.fragments import parse_conditions
 from icarus_lite.language.percept_types import lineages
 from icarus_lite.language.syntax import Atom, Condition, Constant
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Belief, Percept, Status, Value, format_value
 from icarus_lite.trace.recording import Instant, Recording
 

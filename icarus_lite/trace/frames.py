@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
 from icarus_lite.errors import FrameError
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Action, Outcome, Percept, Status, Value, is_number
 
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
 from icarus_lite.errors import TraceError
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Outcome, Percept
 from icarus_lite.trace.frames import outcome_from_json
 from icarus_lite.trace.record import FORMAT, VERSION

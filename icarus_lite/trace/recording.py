@@ -11,7 +11,6 @@ from __future__ import annotations
 import json
 from bisect import bisect_right
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
@@ -37,6 +36,7 @@ from icarus_lite.inference import (
 )
 from icarus_lite.language import DomainError, diagnose_text
 from icarus_lite.language.syntax import Domain
+from icarus_lite.records import dataclass, field
 from icarus_lite.symbols import Action, Belief, Outcome, Percept, Value
 from icarus_lite.trace.as_of import ChronicleAsOf
 from icarus_lite.trace.ground_text import parse_action, parse_belief

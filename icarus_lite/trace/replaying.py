@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
 from typing import Final
 
 from icarus_lite.inference import Functions
+from icarus_lite.records import dataclass
 from icarus_lite.trace.reader import inputs_of
 from icarus_lite.trace.record import cycle_record
 from icarus_lite.trace.recording import Recording

@@ -9,10 +9,10 @@ what happened diverged from its plan, and how it adapted; all in terms of its ow
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from itertools import groupby, zip_longest
 
 from icarus_lite.inference import ATTACHED, Period, Withdrawal
+from icarus_lite.records import dataclass, field
 from icarus_lite.symbols import Status
 from icarus_lite.trace.recording import Recording
 from icarus_lite.trace.serving import serves

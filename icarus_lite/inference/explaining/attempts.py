@@ -13,7 +13,6 @@ cut off, the answer depends on nothing else, and not on the order of the facts.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from typing import Final, cast
 
 from icarus_lite.errors import InferenceError
@@ -33,6 +32,7 @@ from icarus_lite.inference.matching import Evaluator, variables_of
 from icarus_lite.inference.supports import Literal, bind_literal
 from icarus_lite.inference.views import Row
 from icarus_lite.language.syntax import Call, Condition
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Belief, Value
 
 LIMIT: Final = 1_000

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass, field
 from functools import cached_property
 
 from icarus_lite.inference.belief_supports import BeliefSupports
@@ -16,6 +15,7 @@ from icarus_lite.inference.supports import Support
 from icarus_lite.language.checking.vocabulary import Origin, Vocabulary, vocabulary
 from icarus_lite.language.syntax import Atom, Constant, Domain
 from icarus_lite.language.wording import closest
+from icarus_lite.records import dataclass, field
 from icarus_lite.symbols import Belief, Percept, Value, format_value
 
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 from icarus_lite.language.syntax import Atom, Bind, Call, Constant, Expression, Term, Variable
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Value
 
 

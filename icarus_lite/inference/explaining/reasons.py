@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Final, TypeAlias
 
 from icarus_lite.inference.given import GIVEN
 from icarus_lite.inference.supports import Derivation, Support
 from icarus_lite.language.syntax import Atom, Call, Condition
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Belief, Value, format_value
 
 _NOT_SO: Final = {

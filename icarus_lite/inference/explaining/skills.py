@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from icarus_lite.inference.attachment import ATTACHED
 from icarus_lite.inference.explaining.attempts import nearest_attempt
@@ -15,6 +14,7 @@ from icarus_lite.inference.explaining.reasons import Reason
 from icarus_lite.inference.facts import Bindings
 from icarus_lite.inference.supports import bind_pattern
 from icarus_lite.language.syntax import Atom, Condition, SkillClause
+from icarus_lite.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

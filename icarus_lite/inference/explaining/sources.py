@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from icarus_lite.inference.attachment import ATTACHED
 from icarus_lite.inference.explaining.context import Context
@@ -12,6 +11,7 @@ from icarus_lite.inference.supports import bind_pattern
 from icarus_lite.language.checking.vocabulary import Definition, Origin
 from icarus_lite.language.syntax import Atom, AttachmentRule, Span
 from icarus_lite.language.wording import closest, listing
+from icarus_lite.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from itertools import islice
 from typing import Final
 
@@ -23,6 +22,7 @@ from icarus_lite.inference.facts import match
 from icarus_lite.inference.supports import bind_pattern
 from icarus_lite.language.fragments import parse_conditions
 from icarus_lite.language.syntax import Atom, ConceptClause, Condition, Constant, SkillClause
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Belief, Outcome, Status
 
 DEPTH: Final = 2

@@ -8,10 +8,10 @@ least values. So the attributes depend on what is true now, not on how it came t
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 from icarus_lite.inference.canonical import canonical
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Value
 
 PERCEIVED = -2

@@ -13,7 +13,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 
 from icarus_lite.inference.matching import variables_of
 from icarus_lite.inference.network import kernels
@@ -28,6 +27,7 @@ from icarus_lite.language.syntax import (
     Term,
     Variable,
 )
+from icarus_lite.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

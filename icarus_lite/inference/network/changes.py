@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Belief, Percept
 
 

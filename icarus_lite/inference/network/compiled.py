@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-
 from icarus_lite.inference.matching import Evaluator, Functions
 from icarus_lite.inference.network import kernels
 from icarus_lite.inference.network.changes import Budget
@@ -14,6 +12,7 @@ from icarus_lite.inference.network.network import Network
 from icarus_lite.inference.network.plans import ClausePlan, plans_of
 from icarus_lite.inference.network.vocabulary import Vocabulary
 from icarus_lite.language.syntax import Domain
+from icarus_lite.records import dataclass, field
 
 
 @dataclass(frozen=True, slots=True)

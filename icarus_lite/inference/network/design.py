@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
 from enum import StrEnum
 
 from icarus_lite.errors import InferenceError
@@ -15,6 +14,7 @@ from icarus_lite.inference.network.ordering import Access, access_to, bound_cell
 from icarus_lite.inference.network.relations import Facts, Pairs, Relation
 from icarus_lite.inference.network.vocabulary import Vocabulary
 from icarus_lite.language.syntax import ConceptClause, Domain, Variable
+from icarus_lite.records import dataclass, replace
 
 
 class Keeping(StrEnum):

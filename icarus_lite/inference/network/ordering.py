@@ -10,7 +10,6 @@ variables are bound, tests as soon as they may be.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 from typing import TypeAlias
 
@@ -18,6 +17,7 @@ from icarus_lite.inference.matching import variables_of
 from icarus_lite.inference.network.bodies import Body, Literal, Negation, Test
 from icarus_lite.inference.network.relations import Facts, Pairs, Relation, View
 from icarus_lite.language.syntax import Call, Constant, Expression, Term
+from icarus_lite.records import dataclass
 
 _OBJECTS = 50.0
 _GIVEN = 20.0

@@ -6,7 +6,6 @@ Kernels that see the same objects follow together as long as nothing is out of t
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from icarus_lite.inference.network import kernels
@@ -15,6 +14,7 @@ from icarus_lite.inference.network.pair_stores import NamedPair, PairStore
 from icarus_lite.inference.network.parts import Functions
 from icarus_lite.inference.network.relations import Pairs
 from icarus_lite.inference.network.tables import Objects
+from icarus_lite.records import dataclass
 
 if TYPE_CHECKING:
     from icarus_lite.inference.network.kernels.group import Found

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any, NamedTuple, TypeAlias
 
 from icarus_lite.inference.network.pair_stores import PairStore
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Value
 
 Known: TypeAlias = Mapping[str, Value] | None

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from icarus_lite.inference.network.bodies import Body
 from icarus_lite.inference.network.design import Design, Head, place_of
@@ -11,6 +10,7 @@ from icarus_lite.inference.network.generation.rules import Wiring
 from icarus_lite.inference.network.ordering import Absent, Ask, Step, selectivity
 from icarus_lite.inference.network.relations import Facts, Pairs, Relation
 from icarus_lite.language.syntax import Call, ConceptClause, Term
+from icarus_lite.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

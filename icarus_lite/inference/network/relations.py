@@ -7,11 +7,11 @@ dictionary from key to values, but for the pairs that a numeric kernel keeps.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from icarus_lite.inference.network import kernels
 from icarus_lite.language.syntax import Call
+from icarus_lite.records import dataclass, field
 from icarus_lite.symbols import Value
 
 

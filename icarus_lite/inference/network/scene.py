@@ -8,7 +8,6 @@ object half in its old place and half in its new one.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from icarus_lite.inference.network import kernels
@@ -20,6 +19,7 @@ from icarus_lite.inference.network.pairing import Pairing
 from icarus_lite.inference.network.parts import Functions, Known, Move, Show
 from icarus_lite.inference.network.relations import Pairs, View
 from icarus_lite.inference.network.tables import Objects, Table
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Value
 
 

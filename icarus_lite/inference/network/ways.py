@@ -7,7 +7,6 @@ it. What is the same for every row is worked out once, when the clause is first 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
 from functools import partial
 from typing import Any, TypeAlias
 
@@ -19,6 +18,7 @@ from icarus_lite.inference.supports import Derivation
 from icarus_lite.inference.views import Row, row_getter
 from icarus_lite.language.functions import as_value
 from icarus_lite.language.syntax import Atom, ConceptClause, Constant, Term, Variable
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Belief, Value
 
 _Fetch: TypeAlias = Callable[[Row], Belief | None]

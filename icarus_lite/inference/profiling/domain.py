@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 
 from icarus_lite.inference.engine import InferenceEngine, Memory
 from icarus_lite.inference.network import CompiledDomain
 from icarus_lite.inference.profiling.engine_time import Cycle, EngineTime, engine_time
 from icarus_lite.inference.profiling.plans import RulePlan, rule_plans
 from icarus_lite.inference.profiling.rows import ClauseProfile, Profiler
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Outcome, Percept
 
 

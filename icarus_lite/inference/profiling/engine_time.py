@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import cProfile
 from collections.abc import Sequence
-from dataclasses import dataclass
 from time import thread_time
 from types import CodeType
 from typing import Any, TypeAlias
@@ -23,6 +22,7 @@ from icarus_lite.inference.network.pair_stores import PairStore
 from icarus_lite.inference.network.relations import Pairs
 from icarus_lite.inference.network.running import Running
 from icarus_lite.inference.profiling.source import clause_lines
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Belief, Percept
 
 Cycle: TypeAlias = tuple[Sequence[Percept], Sequence[Belief]]

@@ -8,7 +8,6 @@ only the latter.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Final
 
 from icarus_lite.inference.network.bodies import Body, Literal
@@ -17,6 +16,7 @@ from icarus_lite.inference.network.design import Design, Head, Keeping, place_of
 from icarus_lite.inference.network.ordering import Absent, Access, Ask, Find, Step, arrange
 from icarus_lite.inference.network.relations import Facts, Pairs, Relation, View
 from icarus_lite.language.syntax import Atom, Call, ConceptClause, Term
+from icarus_lite.records import dataclass
 
 KEPT: Final = {
     Keeping.PAIRS: "a numeric kernel keeps its pairs; a moved object has its row and column tried",

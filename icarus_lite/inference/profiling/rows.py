@@ -9,7 +9,6 @@ where they end. What the network itself spends on a clause is measured apart.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from time import thread_time
 from typing import Final, cast
 
@@ -20,6 +19,7 @@ from icarus_lite.inference.facts import FactStore
 from icarus_lite.inference.matching import Evaluator, variables_of
 from icarus_lite.inference.profiling.plans import PlannedStep, RulePlan
 from icarus_lite.inference.views import Row
+from icarus_lite.records import dataclass
 
 MOST_ROWS: Final = 200_000
 """How many rows of a step are carried on; the profile says where it left rows out."""

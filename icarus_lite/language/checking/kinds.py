@@ -8,7 +8,6 @@ concluded, and a domain that never names a value is left alone.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from icarus_lite.language.checking.report import Report
@@ -30,6 +29,7 @@ from icarus_lite.language.syntax import (
     Term,
     Variable,
 )
+from icarus_lite.records import dataclass, field
 
 _Slot: TypeAlias = tuple[str, str | int]  # a predicate, and an attribute or argument of it
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass, field, replace
 
 from icarus_lite.language.diagnostics import Diagnostic, Severity
 from icarus_lite.language.reading.brackets import Lines
 from icarus_lite.language.syntax import Atom, Source, Span
 from icarus_lite.language.wording import closest
+from icarus_lite.records import dataclass, field, replace
 
 _MOST_SEARCHED = 5_000  # words: what half a second is enough for
 _OPENING = r"\([ \t\n\r\f\v]*\*?"

@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass, field
 
 from icarus_lite.language.diagnostics import Diagnostic, Severity
 from icarus_lite.language.syntax import Source
+from icarus_lite.records import dataclass, field
 
 _COMMENT = re.compile(
     r";[ \t;]*(?P<file>icarus:[ \t]*)?(?P<noqa>noqa)(?![\w-])(?P<codes>:[^\n]*)?[^\n]*"

@@ -9,10 +9,10 @@ from __future__ import annotations
 
 from collections import Counter, deque
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 
 from icarus_lite.errors import IcarusError
 from icarus_lite.language.syntax import ConceptClause, Condition
+from icarus_lite.records import dataclass
 
 _LONGEST_PATH = 12
 _MOST_CYCLES = 10

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 
 from icarus_lite.language.checking.expressions import variables_in
 from icarus_lite.language.checking.report import Report
@@ -22,6 +21,7 @@ from icarus_lite.language.syntax import (
     SkillClause,
     Variable,
 )
+from icarus_lite.records import dataclass
 
 _ONCE_IS_FINE = ("?_", "?any")
 

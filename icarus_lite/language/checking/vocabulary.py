@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
 from enum import StrEnum
 
 from icarus_lite.language.percept_types import inherited_attributes
 from icarus_lite.language.syntax import NOWHERE, Atom, Domain, Span
+from icarus_lite.records import dataclass, replace
 
 ATTACHED = "attached"
 """The predicate of the attachment hierarchy: `(attached child parent)`."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from types import MappingProxyType
 
 from icarus_lite.language.checking.vocabulary import Origin
@@ -15,6 +14,7 @@ from icarus_lite.language.editing.nesting import Group, nest, open_groups
 from icarus_lite.language.editing.occurrences import Occurrence, Place, Role, occurrences
 from icarus_lite.language.functions import FUNCTIONS, Function
 from icarus_lite.language.keywords import FORMS, MOMENTS, NOT, field_named
+from icarus_lite.records import dataclass
 
 _CHOICES: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {":maintain": ("yes", "no"), ":request": ("no",)}

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from icarus_lite.language.diagnostics import Diagnostic
 from icarus_lite.language.editing.lexemes import lexemes
@@ -12,6 +11,7 @@ from icarus_lite.language.editing.nesting import Group, nest
 from icarus_lite.language.editing.occurrences import Role, occurrences
 from icarus_lite.language.reading.brackets import Lines
 from icarus_lite.language.reading.indentation import tokens
+from icarus_lite.records import dataclass
 
 _MEANT = re.compile(r"did you mean (?:`([^`]+)`|(\?[^ ?]+))\?")
 _QUOTED = re.compile(r"`([^`]+)`")

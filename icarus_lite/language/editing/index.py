@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from bisect import bisect_right
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 
 from icarus_lite.language.checking.vocabulary import ATTACHED, Origin
 from icarus_lite.language.editing.occurrences import Occurrence, Role, occurrences
+from icarus_lite.records import dataclass
 
 _THINGS = (
     Role.PREDICATE,

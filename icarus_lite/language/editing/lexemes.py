@@ -7,8 +7,9 @@ this one never stops: what is no word of the language is `ILLEGAL`, and the next
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from enum import StrEnum
+
+from icarus_lite.records import dataclass
 
 
 class Kind(StrEnum):

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import TypeAlias
 
 from icarus_lite.language.editing.lexemes import Kind, Lexeme
 from icarus_lite.language.reading.brackets import FORM_NAMES, MAX_DEPTH
+from icarus_lite.records import dataclass, field
 
 
 @dataclass(slots=True)

@@ -7,12 +7,12 @@ rename in a text that the parser would refuse. What the parser accepts, this rea
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
 from enum import StrEnum
 
 from icarus_lite.language.editing.lexemes import Kind, Lexeme, lexemes
 from icarus_lite.language.editing.nesting import Group, Node, nest
 from icarus_lite.language.keywords import FIELDS, FORMS, MOMENTS, NOT, Content, field_named
+from icarus_lite.records import dataclass, replace
 
 
 class Role(StrEnum):

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 from itertools import islice, pairwise
 
 from icarus_lite.language.editing.occurrences import Occurrence, Role
+from icarus_lite.records import dataclass
 
 
 class EntryKind(StrEnum):

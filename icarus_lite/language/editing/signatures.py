@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 from icarus_lite.language.editing.index import Index
 from icarus_lite.language.editing.lexemes import Kind, Lexeme, lexemes
 from icarus_lite.language.editing.nesting import innermost, nest
 from icarus_lite.language.editing.occurrences import Role
 from icarus_lite.language.functions import FUNCTIONS, Function
+from icarus_lite.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import replace
 
 from icarus_lite.language.formatting.tree import (
     Comment,
@@ -21,6 +20,7 @@ from icarus_lite.language.formatting.tree import (
     make_group,
 )
 from icarus_lite.language.older_names import MODERN_FIELDS, MODERN_FORMS
+from icarus_lite.records import replace
 
 _NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]+)?")
 _PERCEPTS = ":percepts"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field, replace
 
 from icarus_lite.language.formatting.tree import (
     Comment,
@@ -16,6 +15,7 @@ from icarus_lite.language.formatting.tree import (
     make_group,
 )
 from icarus_lite.language.reading.brackets import MAX_DEPTH
+from icarus_lite.records import dataclass, field, replace
 
 _TOKEN = re.compile(
     r"""(?P<blank>[ \t\n\r\f\v]+)

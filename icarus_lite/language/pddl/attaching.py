@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 from icarus_lite.language.checking.vocabulary import ATTACHED
 from icarus_lite.language.syntax import Atom, Domain, SkillClause, Term, Variable
+from icarus_lite.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,6 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
 
 from icarus_lite.language.pddl.scope import Scope
 from icarus_lite.language.pddl.syntax import (
@@ -24,6 +23,7 @@ from icarus_lite.language.pddl.syntax import (
     Typed,
     variables_of,
 )
+from icarus_lite.records import dataclass, field, replace
 
 MAX_ALTERNATIVES = 64
 """More clauses than this for one condition are refused: nobody could read them."""

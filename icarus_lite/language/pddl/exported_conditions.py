@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
 
 from icarus_lite.language.checking.expressions import variables_in
 from icarus_lite.language.checking.report import Report
@@ -19,6 +18,7 @@ from icarus_lite.language.pddl.situation import KnownState
 from icarus_lite.language.pddl.syntax import And, Equal, Exists, Formula, Not, Or, Typed
 from icarus_lite.language.pddl.vocabulary import PddlVocabulary, variable_name
 from icarus_lite.language.syntax import Atom, Call, Condition, Constant, Expression, Variable
+from icarus_lite.records import dataclass, field
 from icarus_lite.symbols import Value
 
 _MOST_ROWS = 20_000

@@ -8,7 +8,6 @@ where two of them may or may not be about the same objects, the action asks that
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 
 from icarus_lite.language.checking.vocabulary import ATTACHED
 from icarus_lite.language.pddl.attaching import Attaching, Unclear, bonds
@@ -25,6 +24,7 @@ from icarus_lite.language.syntax import (
     Term,
     Variable,
 )
+from icarus_lite.records import dataclass, field
 
 ASSERTED = "asserted"
 """Ends the name of the predicate that says: an effect has made it so."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 from icarus_lite.language.pddl.exported_conditions import Conditions
 from icarus_lite.language.pddl.exported_effects import UNTOUCHED
@@ -24,6 +23,7 @@ from icarus_lite.language.pddl.syntax import (
 )
 from icarus_lite.language.pddl.vocabulary import PddlVocabulary, variable_name
 from icarus_lite.language.syntax import Condition, Constant
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Value
 
 _MOST_TUPLES = 20_000

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 from icarus_lite.language.checking.report import Report
 from icarus_lite.language.checking.vocabulary import ATTACHED
@@ -32,6 +31,7 @@ from icarus_lite.language.pddl.syntax import (
 from icarus_lite.language.pddl.values import possible_values
 from icarus_lite.language.pddl.vocabulary import PddlVocabulary, variable_name
 from icarus_lite.language.syntax import Condition, Constant, Domain, SkillClause, Term
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Action, Value
 
 

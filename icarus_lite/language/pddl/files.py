@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
 from icarus_lite.language.checking.report import Report
@@ -13,6 +12,7 @@ from icarus_lite.language.pddl.importer import import_problem
 from icarus_lite.language.pddl.reading import read_pddl_domain, read_pddl_problem
 from icarus_lite.language.reading.sources import read_source
 from icarus_lite.language.syntax import Domain, Source
+from icarus_lite.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

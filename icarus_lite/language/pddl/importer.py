@@ -7,7 +7,6 @@ one file that comes out holds everything that a plan needs.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
 
 from icarus_lite.language.checking.report import Report
 from icarus_lite.language.checking.stratification import negation_cycles
@@ -43,6 +42,7 @@ from icarus_lite.language.syntax import (
     Term,
     Variable,
 )
+from icarus_lite.records import dataclass, field
 
 TASK = "problem"
 """The name of the task that an imported problem becomes."""

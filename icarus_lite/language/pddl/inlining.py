@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
 
 from icarus_lite.errors import IcarusError
 from icarus_lite.language.pddl.conditions import renamed
@@ -27,6 +26,7 @@ from icarus_lite.language.pddl.syntax import (
     is_a,
     parents,
 )
+from icarus_lite.records import dataclass, field, replace
 
 
 class RecursiveRuleError(IcarusError, ValueError):

@@ -8,10 +8,10 @@ concept that rests on it.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 
 from icarus_lite.language.checking.vocabulary import ATTACHED
 from icarus_lite.language.syntax import Call, ConceptClause, Condition, Domain, SkillClause
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Belief
 
 EQUALITIES = ("=", "/=")

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TypeAlias, TypeGuard
 
 from icarus_lite.language.checking.report import Report
 from icarus_lite.language.reading.brackets import MAX_DEPTH
 from icarus_lite.language.syntax import Span
+from icarus_lite.records import dataclass
 
 _TOKEN = re.compile(r"[()]|[^\s();\"]+|;.*|(?P<alien>\")")
 _LEGAL = re.compile(r"[?:]?[A-Za-z][A-Za-z0-9_-]*|[A-Za-z0-9_.+-]+|[<>]=?|[=*/#-]", re.ASCII)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field, replace
 from typing import NoReturn
 
 from icarus_lite.language.checking.report import Report
@@ -11,6 +10,7 @@ from icarus_lite.language.pddl.nodes import Group, Node, Word
 from icarus_lite.language.pddl.syntax import OBJECT, Predicate, Typed, ancestors, is_a
 from icarus_lite.language.syntax import Span
 from icarus_lite.language.wording import closest, listing
+from icarus_lite.records import dataclass, field, replace
 
 
 class RefusedError(Exception):

@@ -7,10 +7,10 @@ lower case; the type `object` is above all others.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from icarus_lite.language.syntax import NOWHERE, Span
+from icarus_lite.records import dataclass, field
 
 OBJECT = "object"
 """The type of everything."""

@@ -7,13 +7,13 @@ come true, never smaller: what is not in them is impossible.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Sequence
-from dataclasses import dataclass
 from typing import TypeAlias
 
 from icarus_lite.language.checking.vocabulary import ATTACHED
 from icarus_lite.language.pddl.attaching import Attaching, attachings
 from icarus_lite.language.pddl.kinds import planned_skills
 from icarus_lite.language.syntax import Atom, Condition, Constant, Domain, Term, Variable
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Belief, Value
 
 Place: TypeAlias = tuple[str, int | str]

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
 
 from icarus_lite.language.pddl.kinds import Kinds
 from icarus_lite.language.pddl.names import Names, pddl_word
 from icarus_lite.language.pddl.syntax import OBJECT, Fact, Predicate, Typed, ancestors
 from icarus_lite.language.pddl.values import PossibleValues
 from icarus_lite.language.syntax import Constant, Domain, Term
+from icarus_lite.records import dataclass, field
 from icarus_lite.symbols import Belief, Value
 
 _RESERVED = (

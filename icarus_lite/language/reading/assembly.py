@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
 from pathlib import PurePath
 from typing import TypeVar
 
@@ -34,6 +33,7 @@ from icarus_lite.language.syntax import (
     Term,
     Variable,
 )
+from icarus_lite.records import dataclass, field
 
 _Value = TypeVar("_Value", Atom, Bind, Call, Command, Condition, Constant, Group, Word)
 

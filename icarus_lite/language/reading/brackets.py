@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
-from dataclasses import dataclass
 
 from icarus_lite.language.syntax import Span
+from icarus_lite.records import dataclass
 
 MAX_DEPTH = 100
 """How deep parentheses may be nested. Real clauses need about ten."""

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import TypeAlias, TypeVar, cast
@@ -18,6 +17,7 @@ from icarus_lite.language.diagnostics import Diagnostic, DomainError, Severity
 from icarus_lite.language.reading.parts import Form, Outcome, Word
 from icarus_lite.language.reading.sources import read_source, reason_of
 from icarus_lite.language.syntax import Source, Span
+from icarus_lite.records import dataclass, field, replace
 
 MAX_INCLUDES = 30
 """How long a chain of files may be of which each includes the next."""

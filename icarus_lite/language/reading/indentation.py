@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+
+from icarus_lite.records import dataclass, field
 
 _WORD = re.compile(
     r'[()]|;[^\n]*|#\|[\s\S]*?\|#|"[^"\\]*(?:\\[\s\S][^"\\]*)*"|[^ \t\n\r\f\v()"\';]+|[\'"]'

@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
 from enum import Enum, auto
 
 from icarus_lite.language.reading.indentation import Oddity, Token, oddities, tokens
+from icarus_lite.records import dataclass, replace
 
 MAX_EDITS = 12
 """How many parentheses are mended in one form; a text with more is no domain."""

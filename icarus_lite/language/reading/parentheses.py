@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
 
 from icarus_lite.language.diagnostics import Diagnostic, Severity
 from icarus_lite.language.reading.brackets import FORM_NAMES, Lines
@@ -15,6 +14,7 @@ from icarus_lite.language.reading.indentation import Token, tokens
 from icarus_lite.language.reading.mending import Edit, EditKind, Mender, Mending, Parse
 from icarus_lite.language.reading.stumbles import shortened
 from icarus_lite.language.syntax import Span
+from icarus_lite.records import dataclass, replace
 
 # A form at the margin begins anew even where its own parenthesis is doubled or forgotten.
 _FORM_AT_MARGIN = re.compile(

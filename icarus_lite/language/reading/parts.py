@@ -6,7 +6,6 @@ older names, and be reported with their place when they do not fit together.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TypeAlias
 
 from icarus_lite.language.diagnostics import Diagnostic
@@ -19,6 +18,7 @@ from icarus_lite.language.syntax import (
     Span,
     Term,
 )
+from icarus_lite.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
 
@@ -30,6 +29,7 @@ from icarus_lite.language.reading.parentheses import Mended, mend_parentheses
 from icarus_lite.language.reading.parts import MalformedTermError, Outcome
 from icarus_lite.language.reading.stumbles import Stumble
 from icarus_lite.language.syntax import NOWHERE, Domain, Source, Span
+from icarus_lite.records import dataclass, replace
 
 _EMPTY_HINT = "a domain begins with (domain NAME) and has (concepts …) and (skills …)"
 

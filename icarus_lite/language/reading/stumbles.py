@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 
 from icarus_lite.language.reading.brackets import FORM_NAMES, Lines
 from icarus_lite.language.wording import LONGEST_WORD
+from icarus_lite.records import dataclass
 
 _ALSO_FIELDS = {"agents": "AGENTS_FORM"}
 FORM_TERMINALS = {

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import TypeAlias
 
 from icarus_lite.inference import ATTACHED
 from icarus_lite.language.syntax import Atom, Constant, Domain, SkillClause, Term, Variable
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Value
 
 Pair: TypeAlias = tuple[Value, Value]

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 
 from icarus_lite.planning.ground_task import GroundAtom, State
 from icarus_lite.planning.grounding.instances import Literals
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Belief
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
 
 from icarus_lite.inference.matching import variables_of
 from icarus_lite.language.syntax import (
@@ -15,6 +14,7 @@ from icarus_lite.language.syntax import (
 )
 from icarus_lite.planning.grounding.attaching import Attaching
 from icarus_lite.planning.grounding.views import names_of, terms_of
+from icarus_lite.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,13 +7,13 @@ each is enough; only facts that rest on one another are looked at again until no
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Protocol, TypeAlias
 
 from icarus_lite.planning.ground_task import State
 from icarus_lite.planning.grounding.bits import Bits
 from icarus_lite.planning.grounding.components import components
 from icarus_lite.planning.grounding.instances import Derivation, Literals, fact_of
+from icarus_lite.records import dataclass
 
 Ways: TypeAlias = tuple[tuple[tuple[State, State], ...], State]
 """For a belief: each way to derive it with the bits to set then, and those to set if none holds.

@@ -8,7 +8,6 @@ all these absences.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import Any
 
 from icarus_lite.inference.canonical import canonical
@@ -16,6 +15,7 @@ from icarus_lite.language.syntax import Atom
 from icarus_lite.planning.grounding.clauses import GroundedClause
 from icarus_lite.planning.grounding.hierarchy import NumberedEvent
 from icarus_lite.planning.grounding.views import Attributes, Cells
+from icarus_lite.records import dataclass, field
 from icarus_lite.symbols import Value
 
 _MOST_ABSENCES = 4

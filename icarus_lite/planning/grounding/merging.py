@@ -9,10 +9,10 @@ other. All others are *asserted*, *derived*, or both, and may have been *denied*
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass, field, replace
 
 from icarus_lite.planning.grounding.instances import Literals
 from icarus_lite.planning.grounding.views import Cells
+from icarus_lite.records import dataclass, field, replace
 
 UNDENIED = "undenied "
 """Begins the name of the fact that no effect has ended a belief which concepts still derive."""

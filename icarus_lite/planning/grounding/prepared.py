@@ -8,7 +8,6 @@ in one domain keeps.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
 
 from icarus_lite.inference import ATTACHED, Closure, Evaluator
 from icarus_lite.language.checking.stratification import recursive_concepts, strata
@@ -24,6 +23,7 @@ from icarus_lite.planning.grounding.clauses import GroundedClause, is_bound, tim
 from icarus_lite.planning.grounding.facts import GIVEN, HELD
 from icarus_lite.planning.grounding.program import Program, compile_program
 from icarus_lite.planning.relevance import relevance
+from icarus_lite.records import dataclass, replace
 
 GOAL = "goal "
 """Begins the name of a made-up concept that stands for goals with variables."""

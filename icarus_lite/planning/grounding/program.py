@@ -10,13 +10,13 @@ leads. The source is compiled once for a domain and a set of predicates that can
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 from types import CodeType
 
 from icarus_lite.inference.matching import variables_of
 from icarus_lite.language.syntax import Atom, Call, ConceptClause, Constant, Term, Variable
 from icarus_lite.planning.grounding.clauses import GroundedClause, cells_of, is_bound
 from icarus_lite.planning.grounding.views import View, view_of
+from icarus_lite.records import dataclass, field
 from icarus_lite.symbols import Value
 
 _DEEPEST = 12

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import Any, TypeAlias
 
@@ -17,6 +16,7 @@ from icarus_lite.planning.grounding.facts import GIVEN, HELD, FactBase, static_i
 from icarus_lite.planning.grounding.prepared import Prepared
 from icarus_lite.planning.grounding.views import Attributes, Cells, Index, sorted_attributes
 from icarus_lite.planning.situation import Situation
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Action, Belief, Value
 
 Found: TypeAlias = tuple[Cells, tuple[int, ...], tuple[int, ...]]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from operator import itemgetter
 from typing import Any
 
@@ -13,6 +12,7 @@ from icarus_lite.planning.grounding.clauses import GroundedClause
 from icarus_lite.planning.grounding.facts import GIVEN, FactBase
 from icarus_lite.planning.grounding.prepared import Prepared
 from icarus_lite.planning.grounding.views import Cells, Index, view_of
+from icarus_lite.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
 
 from icarus_lite.planning.grounding.attaching import Attach
 from icarus_lite.planning.grounding.instances import Derivation, Instance, Literals, fact_of
+from icarus_lite.records import dataclass, replace
 from icarus_lite.symbols import Value
 
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from icarus_lite.planning.ground_task import State
 from icarus_lite.planning.grounding.attaching import Attach
 from icarus_lite.planning.grounding.bits import Bits
 from icarus_lite.planning.grounding.closing import Closing
 from icarus_lite.planning.grounding.instances import Instance, Literals
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Value
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass
 
 from icarus_lite.inference import Closure
 from icarus_lite.language.syntax import Condition, Domain
@@ -20,6 +19,7 @@ from icarus_lite.planning.grounding.rules import rules_of
 from icarus_lite.planning.grounding.simplification import Simplified, left_of, simplify
 from icarus_lite.planning.grounding.special_effects import links_of, special_effects
 from icarus_lite.planning.situation import Imagination
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Action, Belief
 
 

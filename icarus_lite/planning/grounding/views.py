@@ -8,11 +8,11 @@ fact found there binds.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass
 from operator import itemgetter
 from typing import Any, TypeAlias
 
 from icarus_lite.language.syntax import Atom, Constant, Term
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Value
 
 Cells: TypeAlias = tuple[Value, ...]

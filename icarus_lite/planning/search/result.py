@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+
+from icarus_lite.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from icarus_lite.planning.ground_task import GroundTask
 from icarus_lite.planning.search.elimination import without_needless_steps
 from icarus_lite.planning.search.greedy import greedy
 from icarus_lite.planning.search.relaxed_plan import Relaxation
 from icarus_lite.planning.search.result import Limits, SearchResult
+from icarus_lite.records import replace
 
 
 def search(task: GroundTask, limits: Limits | None = None) -> SearchResult:

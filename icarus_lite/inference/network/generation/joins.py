@@ -7,7 +7,6 @@ indent.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 
 from icarus_lite.inference.matching import variables_of
 from icarus_lite.inference.network.bodies import Body, Literal, Negation, is_safe
@@ -17,6 +16,7 @@ from icarus_lite.inference.network.generation.writing import Lines
 from icarus_lite.inference.network.ordering import Absent, Access, Ask, Find, Step, bound_cells
 from icarus_lite.inference.network.relations import Pairs, Relation
 from icarus_lite.language.syntax import Constant, Term
+from icarus_lite.records import dataclass, field
 
 _DEEPEST = 14
 """Loops inside one another before the rest goes into a function of its own: Python allows 20."""

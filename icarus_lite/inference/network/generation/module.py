@@ -7,7 +7,6 @@ import linecache
 import math
 import sys
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from types import CodeType
 from typing import Any
 
@@ -23,6 +22,7 @@ from icarus_lite.inference.network.generation.stores import title_of, write_stor
 from icarus_lite.inference.network.generation.writing import Lines
 from icarus_lite.inference.network.parts import Functions, Parts
 from icarus_lite.inference.network.relations import Pairs, Relation, View
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import is_number
 
 

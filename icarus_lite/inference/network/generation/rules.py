@@ -9,7 +9,6 @@ a network that believes nothing yet, one to find every derivation of a given bel
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 
 from icarus_lite.inference.matching import variables_of
 from icarus_lite.inference.network.bodies import Body, Literal, Negation, is_safe
@@ -25,6 +24,7 @@ from icarus_lite.inference.network.generation.writing import Lines
 from icarus_lite.inference.network.ordering import Step, arrange
 from icarus_lite.inference.network.relations import Facts, Pairs, Relation
 from icarus_lite.language.syntax import Expression, Term, Variable
+from icarus_lite.records import dataclass, field
 
 
 @dataclass(slots=True)

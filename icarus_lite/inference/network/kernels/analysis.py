@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from enum import Enum
 from itertools import pairwise
 
@@ -13,6 +12,7 @@ from icarus_lite.inference.network.kernels.exact import PairSide, variables_of
 from icarus_lite.inference.network.kernels.ranges import NUMERIC_FUNCTIONS, is_nonnegative
 from icarus_lite.language.functions import FUNCTIONS, evaluate
 from icarus_lite.language.syntax import Call, Constant, Expression, Variable
+from icarus_lite.records import dataclass
 
 _MIRRORED = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
 COMPARISONS = frozenset(_MIRRORED)

@@ -8,9 +8,9 @@ crossover two ways cost about the same.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from icarus_lite.language.syntax import Call, Expression
+from icarus_lite.records import dataclass
 
 LIST_ROW = 0.7
 """A row of a list comprehension: the call, the bytes, the comparison with the old row."""

@@ -7,13 +7,13 @@ hand whatever is out of the ordinary to it.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import TypeAlias
 
 from icarus_lite.inference.expressions import compile_expression, conjoin
 from icarus_lite.inference.network.kernels.columns import Columns
 from icarus_lite.language.functions import NO_FUNCTIONS
 from icarus_lite.language.syntax import Call, Expression, Variable
+from icarus_lite.records import dataclass
 
 ExactTest: TypeAlias = Callable[[int, int], bool]
 """Tells whether the objects in a left and a right slot meet the tests; raises InferenceError."""

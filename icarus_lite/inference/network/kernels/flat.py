@@ -7,7 +7,6 @@ taken by one index made beforehand. What does not change was laid out once.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -18,6 +17,7 @@ from icarus_lite.inference.network.kernels.matrix import MatrixRelation
 from icarus_lite.inference.network.kernels.order import OrderRelation
 from icarus_lite.inference.network.kernels.relation import Change, Pair
 from icarus_lite.inference.network.kernels.tester import Slots, Truths
+from icarus_lite.records import dataclass
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

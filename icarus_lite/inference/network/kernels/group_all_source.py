@@ -6,8 +6,6 @@ tests, for the rules with a bound on the distance, only given ones.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-
 from icarus_lite.inference.network.kernels.array_source import ArrayWriter, NotVectorizableError
 from icarus_lite.inference.network.kernels.columns import PLAIN
 from icarus_lite.inference.network.kernels.group_members import GroupNames
@@ -18,6 +16,7 @@ from icarus_lite.inference.network.kernels.group_terms import (
     renamed_tests,
 )
 from icarus_lite.language.syntax import Expression, Variable
+from icarus_lite.records import dataclass, field
 
 
 def write_all(

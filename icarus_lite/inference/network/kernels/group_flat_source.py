@@ -8,8 +8,6 @@ operations are on such rows of pairs; those that are alike become one call (see 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from icarus_lite.inference.network.kernels.array_source import ArrayWriter, NotVectorizableError
 from icarus_lite.inference.network.kernels.columns import PLAIN
 from icarus_lite.inference.network.kernels.group_members import GroupNames, Member
@@ -21,6 +19,7 @@ from icarus_lite.inference.network.kernels.group_terms import (
 )
 from icarus_lite.inference.network.kernels.stacking import Stacked, Stacking
 from icarus_lite.language.syntax import Expression
+from icarus_lite.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

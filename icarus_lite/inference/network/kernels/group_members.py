@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from icarus_lite.inference.network.kernels.columns import PLAIN
 from icarus_lite.inference.network.kernels.exact import PairSide
@@ -14,6 +13,7 @@ from icarus_lite.inference.network.kernels.ranges import is_guarded
 from icarus_lite.inference.network.kernels.side import SidePlan
 from icarus_lite.inference.network.kernels.tester import AxisPlan, MatrixPlan
 from icarus_lite.language.syntax import Expression, Variable
+from icarus_lite.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

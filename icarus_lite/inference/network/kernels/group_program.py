@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import linecache
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
 from hashlib import blake2b
 from types import CodeType
 
 from icarus_lite.inference.network.kernels.costs import GroupCosts, OneGroupWay
 from icarus_lite.inference.network.kernels.group_members import Member, is_groupable
 from icarus_lite.inference.network.kernels.group_source import GroupSource, write_group
+from icarus_lite.records import dataclass, replace
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,6 @@ as many as there are where there are few.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from icarus_lite.inference.network.kernels.columns import PLAIN
 from icarus_lite.inference.network.kernels.group_all_source import write_all
@@ -15,6 +14,7 @@ from icarus_lite.inference.network.kernels.group_few_source import write_few
 from icarus_lite.inference.network.kernels.group_flat_source import FlatSource, write_flat
 from icarus_lite.inference.network.kernels.group_members import Bound, GroupNames, Member, box_of
 from icarus_lite.inference.network.kernels.ranges import is_guarded
+from icarus_lite.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

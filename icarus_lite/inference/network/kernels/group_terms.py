@@ -5,14 +5,13 @@ So that what two rules have in common can be computed once.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from icarus_lite.inference.network.kernels.array_source import ArrayWriter, NotVectorizableError
 from icarus_lite.inference.network.kernels.columns import PLAIN
 from icarus_lite.inference.network.kernels.exact import PairSide
 from icarus_lite.inference.network.kernels.group_members import GroupNames, Member
 from icarus_lite.inference.network.kernels.ranges import is_guarded
 from icarus_lite.language.syntax import Call, Expression, Variable
+from icarus_lite.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

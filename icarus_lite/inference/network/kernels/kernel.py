@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
 
 from icarus_lite.errors import InferenceError
 from icarus_lite.inference.network.kernels.analysis import (
@@ -36,6 +35,7 @@ from icarus_lite.inference.network.kernels.relation import Bound, PairRelation
 from icarus_lite.inference.network.kernels.side import Gate, SidePlan
 from icarus_lite.inference.network.kernels.tester import AxisPlan, MatrixPlan
 from icarus_lite.language.syntax import Call, Constant, Expression, Variable
+from icarus_lite.records import dataclass, replace
 
 
 @dataclass(frozen=True, slots=True)

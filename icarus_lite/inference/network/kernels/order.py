@@ -12,7 +12,6 @@ from __future__ import annotations
 import math
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -30,6 +29,7 @@ from icarus_lite.inference.network.kernels.relation import (
 )
 from icarus_lite.inference.network.kernels.side import Side, SidePlan
 from icarus_lite.inference.network.kernels.tester import Slots, Truths
+from icarus_lite.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import linecache
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from hashlib import blake2b
 from typing import Any, TypeAlias
 
@@ -21,6 +20,7 @@ from icarus_lite.inference.network.kernels.python_source import (
 from icarus_lite.inference.network.kernels.ranges import MOST
 from icarus_lite.language.functions import FUNCTIONS
 from icarus_lite.language.syntax import Call, Expression, Variable
+from icarus_lite.records import dataclass
 
 RowsFunction: TypeAlias = Callable[
     [Sequence[int], Sequence[int], Sequence[list[Any]], Sequence[list[Any]], bytearray, int],

@@ -12,9 +12,9 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 
 from icarus_lite.language.syntax import Call, Constant, Expression, Variable
+from icarus_lite.records import dataclass
 
 EXACT_INTEGERS = 2.0**53
 """Up to this magnitude every integer is a float."""

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 import numpy as np
 
 from icarus_lite.inference.network.kernels.columns import PLAIN, Columns, Numbers, is_plain
 from icarus_lite.inference.network.kernels.program import Inputs, SidePrograms
+from icarus_lite.records import dataclass
 
 Gate: TypeAlias = Callable[[int], bool | None]
 """Asks the tests about one object alone; None where only the exact test can tell."""

@@ -11,12 +11,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from icarus_lite.inference.network.kernels.columns import Numbers
+from icarus_lite.records import dataclass
 
 Slots = NDArray[np.intp]
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +13,7 @@ from icarus_lite.inference.network.kernels.exact import ExactTest
 from icarus_lite.inference.network.kernels.program import MaskFunction
 from icarus_lite.inference.network.kernels.relation import Bind
 from icarus_lite.inference.network.kernels.side import Side, SidePlan
+from icarus_lite.records import dataclass
 
 Truths = NDArray[np.bool_]
 Slots = NDArray[np.intp]
