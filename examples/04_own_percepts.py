@@ -15,9 +15,10 @@ from runtime.cell_source import CellSource, Wires
 from runtime.config import load_robot
 from runtime.cycle_report import CycleReport
 from runtime.drivers import ArmState, Driver, DryRunDriver
-from runtime.loop import Loop, PerceptSource
+from runtime.loop import Loop
 from runtime.parts import load_parts
 from runtime.run import anchoring_parameters
+from runtime.seeing import PerceptSource
 
 config = load_robot("ur5")
 

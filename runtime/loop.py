@@ -3,40 +3,29 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Final, Protocol
+from typing import Final
 
-from aapa import Anchor, Anchoring, AnchorStatus, Attachment, Camera, Detection
+from aapa import Anchor, Anchoring, Attachment
 from icarus_lite import Action, Agent, Decision, DecisionKind, Outcome, Request, Status
 from icarus_lite.execution import NO_ANSWER, patience_s
 from icarus_lite.planning import PlanStep
 from icarus_lite.trace import LOST, RESUMED, TraceWriter
 from runtime.config import RobotConfig
 from runtime.cycle_report import CycleReport
-from runtime.drivers import PARK, ArmState, Driver, Recoverable
+from runtime.drivers import PARK, Driver, Recoverable
 from runtime.errors import ControllerError, DriverError
-from runtime.expecting import Expectation
 from runtime.interruption import Interruption
 from runtime.people import People
-from runtime.percepts import hand_detection, is_in_company, percepts_of
 from runtime.run_record import LoopResult, RunRecord
 from runtime.second_look import LoopLimits, SecondLook
+from runtime.seeing import PerceptSource, Sight
 
 _ARM_NOTICES_WITHIN_S: Final = 3.0  # longer than a driver believes a silent controller
 _LOOK_EVERY_S: Final = 0.02
 _GRASP: Final = "grasp"
-
-
-class PerceptSource(Protocol):
-    """Whatever reports detections: a camera with a detector, or the simulated cell."""
-
-    def update(self, arm: ArmState) -> None:
-        """Take note of where the arm is and what its gripper does."""
-
-    def look(self) -> tuple[Sequence[Detection], Camera]:
-        """Give the next frame's detections and the camera that took it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,15 +81,12 @@ class Loop:
         taken_up: TakenUp | None = None,
     ) -> None:
         self._agent = agent
-        self._anchoring = anchoring
+        self._sight = Sight(anchoring, source, config, () if taken_up is None else taken_up.anchors)
         self._driver = driver
-        self._source = source
-        self._config = config
         self._trace = trace
         self._observers = tuple(observers)
         self._limits = limits or LoopLimits()
         self._people = people or People()
-        self._anchors = () if taken_up is None else taken_up.anchors
         self._record = RunRecord()
         self._aborted = None if taken_up is None else taken_up.interrupted
         self._extra: dict[str, object] = {} if taken_up is None else {RESUMED: True}
@@ -108,8 +94,6 @@ class Loop:
         self._last: CycleReport | None = None
         self._second_look = SecondLook(driver, self._limits, begun=taken_up is None)
         self._started_s = 0.0
-        self._company = False
-        self._expectation = Expectation()
         self._interruption = Interruption()
         self._asked_since = -1
         self._cycles = 0
@@ -196,7 +180,7 @@ class Loop:
         broken_off, self._aborted = self._aborted, None
         if broken_off is not None:
             return (self._measured(broken_off),)
-        outcome = self._driver.poll(self._by_name())
+        outcome = self._driver.poll(self._sight.by_name())
         return () if outcome is None else (outcome,)
 
     def _measured(self, broken_off: Outcome) -> Outcome:
@@ -211,34 +195,27 @@ class Loop:
         )
         if broken_off.status is not Status.FAILED or not grasps:
             return broken_off
-        self._source.update(self._driver.state())
+        self._sight.update(self._driver.state())
         if not self._driver.state().gripped:
             return broken_off
         return Outcome(broken_off.action, reason=f"it holds the part, though {broken_off.reason}")
 
     def _cycle(self, outcomes: tuple[Outcome, ...]) -> CycleReport:
         """See, anchor, infer, decide; write it down."""
-        times = [time.perf_counter()]
+        begun_s = time.perf_counter()
         arm = self._driver.state()
-        self._source.update(arm)
-        outcomes = self._outcomes = (*outcomes, *self._people.colleague.reports(self._by_name()))
-        detections, camera = self._source.look()
-        times.append(time.perf_counter())
-        hand = hand_detection(arm, camera, self._config)
-        before, attachments = self._anchors, self._attachments()
-        self._anchors = self._anchoring.update([*detections, hand], attachments, camera)
-        self._company = is_in_company(self._anchors, detections)
-        self._second_look.notice(company=self._company)
-        expected = self._expectation.update(
-            self._anchors, detections, attachments, camera, company=self._company
-        )
-        times.append(time.perf_counter())
+        self._sight.update(arm)
+        reports = self._people.colleague.reports(self._sight.by_name())
+        outcomes = self._outcomes = (*outcomes, *reports)
         acting = any(outcome.status is Status.RUNNING for outcome in outcomes)
-        percepts = percepts_of(self._anchors, arm, self._config, acting=acting, expected=expected)
-        decision = self._agent.cycle(percepts, outcomes)
-        times.append(time.perf_counter())
-        self._note(decision.cycle, outcomes, before)
-        report = CycleReport(decision, outcomes, percepts, self._anchors, tuple(detections), arm)
+        seen = self._sight.look(arm, self._attachments(), acting=acting)
+        self._second_look.notice(company=self._sight.company)
+        decision = self._agent.cycle(seen.percepts, outcomes)
+        times = (begun_s, seen.looked_s, seen.anchored_s, time.perf_counter())
+        self._note(decision.cycle, outcomes, seen.before)
+        report = CycleReport(
+            decision, outcomes, seen.percepts, self._sight.anchors, seen.detections, arm
+        )
         seconds = [round(b - a, 6) for a, b in pairwise(times)]
         self._publish(report, dict(zip(("look_s", "anchor_s", "decide_s"), seconds, strict=True)))
         return report
@@ -277,7 +254,7 @@ class Loop:
             return self._stand_aside(decision.request, step, report)
         if decision.kind is DecisionKind.ACT:
             self._second_look.break_off()
-            self._driver.start(step.action, step.commands, self._by_name())
+            self._driver.start(step.action, step.commands, self._sight.by_name())
             self._record.started(decision.cycle, step.action)
             self._started_s = report.arm.timestamp_s
         elif decision.kind is DecisionKind.ABORT:
@@ -292,7 +269,7 @@ class Loop:
         """Get the arm out of the way, ask, and keep still while another agent does its part."""
         if request.since == report.decision.cycle:
             self._record.started(request.since, step.action, "requested")
-        no_way = self._second_look.retreat(report.outcomes, self._by_name())
+        no_way = self._second_look.retreat(report.outcomes, self._sight.by_name())
         if no_way is not None:
             return _End(no_way)
         if not self._second_look.there:
@@ -301,7 +278,7 @@ class Loop:
         if self._asked_since != request.since:
             self._asked_since, self._started_s = request.since, now_s
             if request.sentence:
-                self._people.colleague.ask(step.action, request.sentence, self._by_name())
+                self._people.colleague.ask(step.action, request.sentence, self._sight.by_name())
         limit_s = patience_s(step)
         if now_s - self._started_s > limit_s:
             reason = f"{NO_ANSWER} within {limit_s:g} s"
@@ -319,51 +296,27 @@ class Loop:
         impasse only ends the run when looking again did not help.
         """
         look = self._second_look
-        no_way = look.retreat(outcomes, self._by_name())
+        no_way = look.retreat(outcomes, self._sight.by_name())
         if no_way is not None:
             return _End(no_way)
         if not look.there:
             return None
         achieved = decision.kind is DecisionKind.ACHIEVED
         wanted = [str(term) for goal in self._agent.goals for term in goal.atom.args]
-        unsettled = self._company or (achieved and self._is_unsettled(wanted))
+        speaks_against = bool(self._agent.state.doubts) or self._sight.shows_another_of(wanted)
+        unsettled = self._sight.company or (achieved and speaks_against)
         look.count(now_s, achieved=achieved, unsettled=unsettled)
         if achieved:
-            done = look.confirmed(now_s, doubtful=self._is_doubtful(wanted))
+            doubtful = self._sight.takes_on_trust(wanted, visited=look.visited)
+            done = look.confirmed(now_s, doubtful=doubtful)
             return _End(decision.reason, achieved=True) if done else None
         if not look.in_vain(now_s):
             return None
         return _End("; ".join([decision.reason, *self._record.gone(wanted)]))
 
-    def _is_unsettled(self, wanted: Collection[str]) -> bool:
-        """Tell whether something begins to speak against what is believed of the goals' objects.
-
-        A belief is in doubt, or what there is but one of is seen in another place.
-        """
-        unique = self._anchoring.parameters.unique_types
-        return bool(self._agent.state.doubts) or any(
-            anchor.type in unique
-            and anchor.type in wanted
-            and anchor.name not in wanted
-            and anchor.status is AnchorStatus.VISIBLE
-            for anchor in self._anchoring.anchors
-        )
-
-    def _is_doubtful(self, wanted: Collection[str]) -> bool:
-        """Tell whether a goal is believed of what is not seen, though it may have been taken."""
-        visited, shown = self._second_look.visited, self._expectation.shown
-        return any(
-            anchor.status is AnchorStatus.ATTACHED and (visited or anchor.name in shown)
-            for anchor in self._anchors
-            if anchor.name in wanted
-        )
-
     def _note(self, cycle: int, outcomes: Sequence[Outcome], before: Sequence[Anchor]) -> None:
-        self._record.cycle(cycle, outcomes, before, self._anchors, self._anchoring.frame)
+        self._record.cycle(cycle, outcomes, before, self._sight.anchors, self._sight.frame)
 
     def _attachments(self) -> list[Attachment]:
         pairs = self._agent.state.hierarchy.pairs()
         return [Attachment(str(child), str(parent)) for child, parent in pairs]
-
-    def _by_name(self) -> dict[str, Anchor]:
-        return {anchor.name: anchor for anchor in self._anchors}
