@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from heapq import heappop, heappush
-from typing import NamedTuple
 
 from icarus_lite.planning.ground_task import GroundTask, State
+from icarus_lite.records import dataclass
 
 _UNMET = 1 << 24
 """What an unmet condition weighs in the number kept for each operator, above any cost."""
@@ -14,7 +14,8 @@ FAR = 1 << 30
 """The cost of an atom that nothing reaches."""
 
 
-class Estimate(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Estimate:
     """What a relaxed plan tells of a state.
 
     Args:
@@ -142,11 +143,15 @@ class Relaxation:
             return cost
         found: dict[int, list[int]] = {}
         for number in start:
+            total = waiting[number]
             for atom in adds[number]:
-                if waiting[number] < cost[atom]:
-                    cost[atom] = waiting[number]
+                if total < cost[atom]:
+                    cost[atom] = total
                     supporter[atom] = number
-                    found.setdefault(waiting[number], []).append(atom)
+                    if total in found:
+                        found[total].append(atom)
+                    else:
+                        found[total] = [atom]
         costs = sorted(found)
         while costs:
             present = heappop(costs)
@@ -161,7 +166,8 @@ class Relaxation:
                 for number in readers[atom]:
                     waiting[number] = total = waiting[number] + change
                     if total < _UNMET:
-                        total = min(total, cap)
+                        if total > cap:  # noqa: PLR1730 - `min` takes as long as all the rest
+                            total = cap
                         for added in adds[number]:
                             if total < cost[added]:
                                 cost[added] = total

@@ -16,7 +16,7 @@ def test_the_bits_of_a_mask_come_lowest_first():
 
 def test_on_a_straight_way_the_estimate_is_the_distance(problems):
     task = problems.of("at0", "at5", CORRIDOR)
-    assert Relaxation(task).estimate(task.initial, task.goal) == (5, [0], [0])
+    assert Relaxation(task).estimate(task.initial, task.goal) == Estimate(5, [0], [0])
 
 
 def test_an_operator_that_serves_two_goals_counts_once(problems):
@@ -58,7 +58,7 @@ def test_an_operator_that_only_a_promise_of_a_rule_lets_start_is_not_applicable(
         "start", "end", [("finish", "free", "end", "")], rules=[("free", "start")]
     )  # fmt: skip
     estimate = Relaxation(task).estimate(task.initial, task.goal)
-    assert estimate == (1, [], [])
+    assert estimate == Estimate(1, [], [])
 
 
 def test_costs_beyond_all_bounds_do_not_confuse_the_count_of_conditions(problems):
