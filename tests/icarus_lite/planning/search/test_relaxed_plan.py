@@ -4,7 +4,7 @@ import random
 
 import pytest
 
-from icarus_lite.planning.search.relaxed_plan import Relaxation, bits
+from icarus_lite.planning.search.relaxed_plan import Estimate, Relaxation, bits
 
 CORRIDOR = [(f"go{n}", f"at{n}", f"at{n + 1}", f"at{n}") for n in range(5)]
 
