@@ -1,4 +1,4 @@
-"""The progress bar of an evaluation, on standard error."""
+"""How far a long work is, on standard error."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from rich.progress import (
 
 
 class ProgressBar:
-    """Shows how many videos are done and how long the rest may take; silent off a terminal.
+    """Shows how much is done and how long the rest may take; silent off a terminal.
 
     Args:
         console: Where to draw, usually standard error.
@@ -26,7 +26,7 @@ class ProgressBar:
     def __init__(self, console: Console) -> None:
         self._console = console
         self._progress = Progress(
-            TextColumn("videos"),
+            TextColumn("{task.description}"),
             BarColumn(),
             MofNCompleteColumn(),
             TimeElapsedColumn(),
@@ -49,9 +49,9 @@ class ProgressBar:
     ) -> None:
         self._progress.stop()
 
-    def show(self, done: int, total: int) -> None:
-        """Draw how far it is."""
-        self._progress.update(self._task, completed=done, total=total)
+    def show(self, done: int, total: int, what: str = "videos") -> None:
+        """Draw how far it is, and in what."""
+        self._progress.update(self._task, completed=done, total=total, description=what)
 
     def note(self, text: str) -> None:
         """Print a line above the bar."""
