@@ -11,7 +11,7 @@ import sys
 from typing import Any, ClassVar
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from icarus_lite.records import late
@@ -76,6 +76,7 @@ def outcome(function: Any, *args: Any, **kwargs: Any) -> Any:
 
 @every_way
 @either
+@settings(max_examples=25)
 @given(one=arguments, other=arguments)
 def test_instances_are_alike(make, options, one, other):
     kinds = [make(library, **options) for library in BOTH]
