@@ -139,8 +139,8 @@ class Watch:
 
     @property
     def step_s(self) -> float:
-        """The time since the last reading."""
-        return self._gaps[-1] if self._gaps else 0.0
+        """The time since the last reading, leaving out what this machine has slept through."""
+        return min(self._gaps[-1], _BLINK_S) if self._gaps else 0.0
 
     def note(self, reading: Reading) -> str:
         """Take note of a reading; give the reason if the motion must end."""

@@ -120,6 +120,25 @@ def test_an_opening_within_the_search_is_found_whatever_the_cycle(config, angle,
     assert tool.at[2] < SEAT[2]
 
 
+def test_a_machine_that_sleeps_for_a_while_does_not_end_it(config):
+    """What could not be done meanwhile is not held against it, whenever that is."""
+    asleep, reasons = 0, set()
+    while True:
+        tool, motion = Tool(pocket(), dt=0.05), Pressing(press(), config)
+        readings = 0
+        while not isinstance(told := motion.next(tool.reading()), Finish):
+            tool.step(told)
+            readings += 1
+            if readings == asleep:
+                tool.time_s += 5.0
+        reasons.add(told.reason)
+        if asleep > readings:
+            break
+        asleep += 1
+    assert asleep > 30
+    assert reasons == {""}
+
+
 @pytest.mark.parametrize("floor", [0.002, 0.004])
 def test_a_part_that_sticks_on_its_way_is_jammed(config, floor):
     finish = carry_out(Pressing(press(), config), Tool(pocket(floor=floor)))
