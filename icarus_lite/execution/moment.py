@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
 
-from icarus_lite.inference import FactStore, InferenceEngine, Memory
+from icarus_lite.inference import FactStore, InferenceEngine, Memory, with_values
 from icarus_lite.language.syntax import Condition
 from icarus_lite.planning import Imagination, PlanStep, holds
 from icarus_lite.symbols import Belief, Value
@@ -46,7 +46,7 @@ class Moment:
         if self._scene is None:
             state, asserted = self._memory.state, self._memory.asserted
             pairs = frozenset(state.hierarchy.pairs())
-            self._scene = frozenset(state.percepts), frozenset(asserted), pairs
+            self._scene = frozenset(state.percepts), with_values(asserted), pairs
         return self._scene
 
     @property

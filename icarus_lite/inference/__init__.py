@@ -31,6 +31,7 @@ if TYPE_CHECKING:
         percept_facts,
         resolve,
         unify,
+        with_values,
     )
     from icarus_lite.inference.given import GIVEN, given_memory, given_percepts
     from icarus_lite.inference.matching import Evaluator, Functions, Match, Matcher
@@ -94,6 +95,7 @@ _HOMES = {
     "what_ended": "explaining",
     "why_not": "explaining",
     "why_not_document": "explaining",
+    "with_values": "facts",
 }
 
 __all__ = [
@@ -146,6 +148,7 @@ __all__ = [
     "what_ended",
     "why_not",
     "why_not_document",
+    "with_values",
 ]
 
 __getattr__ = imported_on_use(__name__, _HOMES)

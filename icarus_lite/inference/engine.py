@@ -132,8 +132,9 @@ class InferenceEngine:
     """Derives the beliefs of each cycle from percepts and the last actions.
 
     An effect of an action that succeeded is asserted and persists until an effect removes it, a
-    contradiction of the domain withdraws it, or an object in it is no longer perceived, unless
-    concepts define its predicate: then perception decides, each cycle, whether it holds.
+    contradiction of the domain withdraws it, or an object in it is no longer perceived; asserted
+    anew it has the attributes it comes with now. Unless concepts define its predicate: then
+    perception decides, each cycle, whether it holds.
     `attached` follows Algorithm 1. An action that failed or still runs asserts nothing.
 
     What is believed lies in the memory that `step` takes and gives. The engine keeps a network
@@ -313,11 +314,13 @@ class InferenceEngine:
     def _assert(
         self, asserted: Mapping[Belief, Assertion], change: Change, cause: Assertion
     ) -> dict[Belief, Assertion]:
-        kept = {b: a for b, a in asserted.items() if not change.removes(b)}
-        for belief in change.added:
-            if belief.predicate != ATTACHED and belief.predicate not in self.closure.concepts:
-                kept[belief] = cause
-        return kept
+        new = dict[Belief, Belief]()
+        for each in change.added:
+            if each.predicate != ATTACHED and each.predicate not in self.closure.concepts:
+                new.setdefault(each, each)
+        # What is asserted anew equals the old, but may come with other attributes.
+        kept = {new.get(b, b): a for b, a in asserted.items() if not change.removes(b)}
+        return kept | dict.fromkeys(new, cause)
 
     def _follow(
         self,

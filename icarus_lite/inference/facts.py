@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
 from types import MappingProxyType
 
 from icarus_lite.errors import FrameError
@@ -62,6 +62,16 @@ def check_arguments(action: Action) -> None:
 def _fault(value: object) -> str:
     number = isinstance(value, int | float) and not isinstance(value, bool)
     return f"{value!r}, {'not finite' if number else 'neither a number nor a symbol'}"
+
+
+def with_values(facts: Iterable[Belief]) -> frozenset[Hashable]:
+    """Give what is the same for two collections only if they agree in attributes as well.
+
+    Beliefs themselves are the same by predicate and arguments.
+    """
+    return frozenset(
+        (fact, frozenset(fact.attributes.items())) if fact.attributes else fact for fact in facts
+    )
 
 
 class FactStore:

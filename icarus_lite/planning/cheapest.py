@@ -33,7 +33,7 @@ def cheaper_plan(
         none that costs less.
     """
     steps = [operator.step for operator in task.operators]
-    needs = [sum(1 << atom for atom in operator.conditions) for operator in task.operators]
+    needs = [sum(1 << atom for atom in set(op.conditions)) for op in task.operators]
     prices = [cost_of(step.clause) for step in steps]
     best: dict[State, int] = {task.initial: 0}
     origins: dict[State, tuple[State, int]] = {}

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from icarus_lite.inference import Derivation, FactStore, Matcher, bind_pattern, match
+from icarus_lite.inference import Derivation, Matcher, bind_pattern, match
 from icarus_lite.language.syntax import Atom, Condition, Constant, Variable
 from icarus_lite.planning.causes import Need, Needs, pattern_of
 from icarus_lite.planning.naming import objects_of
@@ -50,9 +50,9 @@ class _Finder:
 
     def __init__(self, stages: Sequence[Stage]) -> None:
         self._stages = stages
-        self._given = [stage.given for stage in stages]
+        self._given = [{fact: fact for fact in stage.given} for stage in stages]
         self._facts = [stage.facts for stage in stages]
-        self._ended = _ended(stages)
+        self._ended = _ended(stages, self._given)
         self._believed: dict[tuple[Atom, int], Need] = {}
         self._absent: dict[tuple[Atom, int], Need] = {}
 
@@ -89,8 +89,8 @@ class _Finder:
     def _support(self, pattern: Atom, fact: Belief, at: int, above: frozenset[Belief]) -> Need:
         literal = Condition(pattern)
         if fact in self._given[at]:
-            return Need(literal, self._since(fact, at, self._given))
-        since = self._since(fact, at, self._facts)
+            return Need(literal, self._given_since(pattern, fact, at))
+        since = self._since(fact, at)
         best: Need | None = None
         for support in self._stages[at].supports.get(fact, ())[:MOST_ALTERNATIVES]:
             if not isinstance(support, Derivation):
@@ -122,12 +122,16 @@ class _Finder:
         producer = _latest(premises)
         return Need(literal, producer, () if producer is None else tuple(premises))
 
-    def _since(
-        self, fact: Belief, at: int, held: Sequence[FactStore | frozenset[Belief]]
-    ) -> int | None:
+    def _since(self, fact: Belief, at: int) -> int | None:
         """Give the step since which a belief holds without a break; None for from the start."""
+        return next((n for n in range(at - 1, -1, -1) if fact not in self._facts[n]), None)
+
+    def _given_since(self, pattern: Atom, fact: Belief, at: int) -> int | None:
+        """Give the step since which a belief is given with the values that a pattern asks for."""
+        values = [fact.attributes.get(name) for name, _ in pattern.attributes]
         for number in range(at - 1, -1, -1):
-            if fact not in held[number]:
+            then = self._given[number].get(fact)
+            if then is None or [then.attributes.get(n) for n, _ in pattern.attributes] != values:
                 return number
         return None
 
@@ -136,17 +140,22 @@ class _Finder:
         known = self._absent.get((pattern, at))
         if known is None:
             last = {
-                fact: number  # the later entry counts
+                fact: (number, fact)  # the later entry counts
                 for number, fact in self._ended.get(pattern.predicate, ())
                 if number < at and match(pattern, fact, {}) is not None
             }
-            gone = tuple(self._end(fact, number, at, above) for fact, number in last.items())
+            gone = tuple(self._end(fact, number, at, above) for number, fact in last.values())
             known = Need(Condition(pattern, negated=True), _latest(gone), gone=gone)
             self._absent[pattern, at] = known
         return known
 
     def _end(self, fact: Belief, number: int, at: int, above: frozenset[Belief]) -> Need:
         """Say what has ended a belief that holds no longer since some step."""
+        if fact in self._given[number] and fact in self._given[number + 1]:
+            # It goes on, with other attributes.
+            named = tuple((name, Constant(value)) for name, value in fact.attributes.items())
+            ended = replace(pattern_of(fact), attributes=named)
+            return Need(Condition(ended, negated=True), number)
         literal = Condition(pattern_of(fact), negated=True)
         before, after = self._stages[number], self._stages[number + 1]
         denied = fact in after.situation.denied and fact not in before.situation.denied
@@ -186,14 +195,23 @@ class _Finder:
         return Need(Condition(support.clause.head))
 
 
-def _ended(stages: Sequence[Stage]) -> Mapping[str, Sequence[tuple[int, Belief]]]:
-    """Give, by predicate, the beliefs that end, each with the step that it ends with."""
+def _ended(
+    stages: Sequence[Stage], given: Sequence[Mapping[Belief, Belief]]
+) -> Mapping[str, Sequence[tuple[int, Belief]]]:
+    """Give, by predicate, the beliefs that end, each with the step that it ends with.
+
+    What is given anew with other attributes has ended as what it was.
+    """
     ended: dict[str, list[tuple[int, Belief]]] = {}
     for number in range(len(stages) - 1):
         after = stages[number + 1].facts
         for fact in stages[number].facts:
             if fact not in after:
                 ended.setdefault(fact.predicate, []).append((number, fact))
+        following = given[number + 1]
+        altered = [f for f in given[number] if following.get(f, f).attributes != f.attributes]
+        for fact in sorted(altered, key=str):
+            ended.setdefault(fact.predicate, []).append((number, fact))
     return ended
 
 

@@ -7,7 +7,8 @@ sign only, so what they leave out can never help.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
+from itertools import chain
 from typing import TypeAlias
 
 from icarus_lite.inference import ATTACHED
@@ -34,7 +35,8 @@ class Relevance:
 def relevance(domain: Domain, goals: Iterable[Condition]) -> Relevance:
     """Chain backwards from goals to the primitive skills that can serve them."""
     primitives = [clause for clause in domain.skills if clause.is_primitive]
-    effects = {id(clause): frozenset(signs_of_effects(domain, clause)) for clause in primitives}
+    valued = _valued(domain, goals := tuple(goals))
+    effects = {id(c): frozenset(signs_of_effects(domain, c, valued)) for c in primitives}
     signs = {(goal.atom.predicate, not goal.negated) for goal in goals}
     chosen: set[int] = set()
     before = -1
@@ -53,16 +55,35 @@ def relevance(domain: Domain, goals: Iterable[Condition]) -> Relevance:
     return Relevance(tuple(c for c in primitives if id(c) in chosen), frozenset(signs))
 
 
-def signs_of_effects(domain: Domain, clause: SkillClause) -> Iterator[Sign]:
-    """Give what a skill can change: its effects, and the attachments it makes or dissolves."""
+def signs_of_effects(
+    domain: Domain, clause: SkillClause, valued: Collection[str] = ()
+) -> Iterator[Sign]:
+    """Give what a skill can change: its effects, and the attachments it makes or dissolves.
+
+    Args:
+        domain: Its attachments count.
+        clause: The skill.
+        valued: The predicates of beliefs that somebody asks about with their attributes.
+    """
     for effect in clause.effects:
         yield effect.atom.predicate, not effect.negated
+        if not effect.negated and effect.atom.predicate in valued:
+            yield effect.atom.predicate, False  # the new attributes replace the old ones
     for rule in domain.attachments:
         if rule.attach.predicate == clause.head.predicate:
             yield ATTACHED, True
             yield ATTACHED, False  # the new parent replaces the old one
         if rule.until is not None and rule.until.predicate == clause.head.predicate:
             yield ATTACHED, False
+
+
+def _valued(domain: Domain, goals: Iterable[Condition]) -> frozenset[str]:
+    """Give the predicates that conditions, or effects that end them, name attributes of."""
+    elements = (each.elements for each in domain.concepts)
+    starting = (each.elements for each in domain.skills)
+    ending = (e for clause in domain.skills for e in clause.effects if e.negated)
+    conditions = chain(goals, ending, *elements, *starting)
+    return frozenset(c.atom.predicate for c in conditions if c.atom.attributes)
 
 
 def can_change(domain: Domain, goal: Condition) -> bool:

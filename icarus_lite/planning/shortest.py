@@ -24,7 +24,7 @@ def shorter_plan(
         return plan, True
     wanted = sum(1 << atom for atom in set(task.goal))
     needs = [
-        (sum(1 << atom for atom in operator.conditions), number)
+        (sum(1 << atom for atom in set(operator.conditions)), number)
         for number, operator in enumerate(task.operators)
     ]
     level = [(task.initial, 0)]

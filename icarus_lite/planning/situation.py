@@ -19,6 +19,7 @@ from icarus_lite.inference import (
     change_of,
     ground,
     percept_facts,
+    with_values,
 )
 from icarus_lite.language.syntax import Condition, Domain, SkillClause
 from icarus_lite.planning.layers import LayeredFacts, fluents_of
@@ -79,7 +80,8 @@ class Situation:
     @property
     def key(self) -> Hashable:
         """What makes two situations the same."""
-        return self.asserted, frozenset(self.hierarchy.pairs()), self.assumed, self.denied
+        pairs = frozenset(self.hierarchy.pairs())
+        return with_values(self.asserted), pairs, with_values(self.assumed), self.denied
 
 
 Inferred: TypeAlias = tuple[FactStore, Mapping[Belief, tuple[Support, ...]]]
@@ -182,11 +184,12 @@ class Imagination:
 
     def applicable(self, clauses: Sequence[SkillClause], facts: FactStore) -> Iterator[PlanStep]:
         """Give the skill instances whose conditions hold, in the order of the domain."""
-        seen: set[tuple[Action, Change]] = set()
+        seen: set[tuple[Action, Change, Hashable]] = set()
         for clause in clauses:
             for step in self.instances(clause, facts, {}):
-                if (step.action, step.change) not in seen:
-                    seen.add((step.action, step.change))
+                key = step.action, step.change, with_values(step.change.added)
+                if key not in seen:
+                    seen.add(key)
                     yield step
 
     def instances(
@@ -206,11 +209,11 @@ class Imagination:
         """Give the situation after a step, as the engine would believe it on success."""
         change, concepts = step.change, self._closure.concepts
         ended = {pattern.predicate for pattern in change.removed}
-        asserted = {
-            b for b in situation.asserted if b.predicate not in ended or not change.removes(b)
+        asserted = {  # first what is new: it is there with the attributes it comes with now
+            b for b in change.added if b.predicate != ATTACHED and b.predicate not in concepts
         }
         asserted.update(
-            b for b in change.added if b.predicate != ATTACHED and b.predicate not in concepts
+            b for b in situation.asserted if b.predicate not in ended or not change.removes(b)
         )
         hierarchy, _ = situation.hierarchy.with_change(change, step.action, 0)
         hierarchy, _ = advance(hierarchy, self._domain.attachments, step.action, 0)

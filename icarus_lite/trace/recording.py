@@ -68,7 +68,9 @@ class _Kept:
     known: frozenset[str] = frozenset()
 
     def after(self, deltas: Sequence[_Delta]) -> _Kept:
-        asserted, links, known = dict(self.asserted), dict(self.links), set(self.known)
+        # What is asserted anew equals the old, but may come with other attributes.
+        asserted = {belief: (belief, cause) for belief, cause in self.asserted.items()}
+        links, known = dict(self.links), set(self.known)
         for delta in deltas:
             for belief in delta.removed:
                 asserted.pop(belief, None)
@@ -82,9 +84,9 @@ class _Kept:
                     links.pop(child, None)
                     links[child] = Link(parent, cause.action, cause.cycle)
                 else:
-                    asserted[belief] = cause
+                    asserted[belief] = belief, cause
             known.update(delta.present)
-        return _Kept(asserted, links, frozenset(known))
+        return _Kept(dict(asserted.values()), links, frozenset(known))
 
 
 @dataclass(frozen=True)

@@ -71,6 +71,7 @@ class Supposition:
                 hierarchy, refused = _attached(hierarchy, edit, cycle)
                 notes += refused
             elif edit.assumed:
+                asserted.pop(fact, None)  # it may have had other attributes
                 asserted[fact] = Assertion(ASSUMED, cycle)
             else:
                 asserted.pop(fact, None)

@@ -6,9 +6,9 @@ import random
 from collections import deque
 from collections.abc import Sequence
 
-from icarus_lite.inference import FactStore, InferenceEngine, Memory
+from icarus_lite.inference import FactStore, InferenceEngine, Memory, with_values
 from icarus_lite.language.syntax import Atom, Condition, Constant, Domain
-from icarus_lite.planning import Imagination, Situation, relevance
+from icarus_lite.planning import Imagination, PlanStep, Situation, relevance
 from icarus_lite.planning.ground_task import GroundOperator, GroundTask, State
 from icarus_lite.planning.grounding import PlanningDomain, ground_goals
 from icarus_lite.symbols import Belief
@@ -73,16 +73,14 @@ def walk(
         for fact in imagination.facts(situation)
         if fact.predicate in fluents
     }
-    keys = {id(op): (op.step.action, op.step.change) for op in task.operators}
+    keys = {id(op): _key(op.step) for op in task.operators}
     for count in range(steps):
         facts = imagination.facts(situation)
         told = {f"{fact} {dict(fact.attributes)}" for fact in facts}
         assert told == from_scratch(engine, imagination, situation)
         unlike = set(differences(task, state, facts, fluents)) - always
         assert not unlike, unlike
-        theirs = {
-            (step.action, step.change): step for step in imagination.applicable(skills, facts)
-        }
+        theirs = {_key(step): step for step in imagination.applicable(skills, facts)}
         ours: dict[object, GroundOperator] = {}
         for operator in applicable(task, state):
             ours.setdefault(keys[id(operator)], operator)
@@ -95,6 +93,10 @@ def walk(
         state = task.after(state, ours[key])
         situation = imagination.after(situation, theirs[key])
     return steps
+
+
+def _key(step: PlanStep) -> tuple[object, ...]:
+    return step.action, step.change, with_values(step.change.added)
 
 
 def from_scratch(

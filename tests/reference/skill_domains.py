@@ -2,12 +2,13 @@
 
 Concepts over percepts, effects and attachments, recursive ones and ones with values among them;
 negated conditions with local variables; effects on what concepts derive; removals by pattern;
-attributes that have one value at a time; attachments that may circle.
+attributes that have one value at a time, asserted anew with others; attachments that may circle.
 """
 
 from __future__ import annotations
 
 import random
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from icarus_lite.inference import Assertion, InferenceEngine, Memory
@@ -38,12 +39,14 @@ class SkillDomain:
     Args:
         rng: Where chance comes from.
         valued: How likely there is a concept with a value, which may be recursive.
+        anew: Whether every skill asserts a value, so that most are asserted again and again.
     """
 
-    def __init__(self, rng: random.Random, valued: float = 0.3) -> None:
+    def __init__(self, rng: random.Random, valued: float = 0.3, *, anew: bool = False) -> None:
         self._rng = rng
         self._attaching = rng.random() < 0.5
-        self._asserted = dict(ASSERTED) | ({"val": 1} if rng.random() < 0.3 else {})
+        self._asserted = dict(ASSERTED) | ({"val": 1} if anew or rng.random() < 0.4 else {})
+        self._anew = anew
         self._concepts = dict(list(CONCEPTS.items())[: rng.randint(0, 3)])
         self._valued = rng.random() < valued
         self._readable = {"thing": 1, "link": 1} | self._asserted
@@ -144,7 +147,15 @@ class SkillDomain:
             pool = [*self._readable]
             body += [self._literal(rng.choice(pool), variables) for _ in range(rng.randint(0, 2))]
             body += self._denials(pool, variables)
-            effects = [self._effect(targets, variables) for _ in range(rng.randint(1, 4))]
+            values: tuple[object, ...] = (1, 2, 3, "?x")
+            if "val" in targets and rng.random() < 0.5:  # a value to be asserted
+                values = (1, "?n", "?n")
+                body.append(
+                    rng.choice((f"(thing {variables[0]} ^size ?n)", f"(val {variables[-1]} ^v ?n)"))
+                )
+            effects = [self._effect(targets, variables, values) for _ in range(rng.randint(1, 4))]
+            if self._anew:
+                effects.append(f"(val {self._term(variables)} ^v {rng.choice(values)})")
             head = f"(s{number} {' '.join(variables)})"
             skills.append(
                 f"({head} :elements ({' '.join(body)}) {self._test(variables, 0.4)}"
@@ -189,12 +200,14 @@ class SkillDomain:
             found.append(f"(not ({name} {' '.join(args)}))")
         return found
 
-    def _effect(self, targets: dict[str, int], variables: tuple[str, ...]) -> str:
+    def _effect(
+        self, targets: dict[str, int], variables: tuple[str, ...], valued: Sequence[object]
+    ) -> str:
         rng = self._rng
         name = rng.choice([*targets])
         args = [self._term(variables) for _ in range(targets[name])]
         if rng.random() < 0.55:
-            values = {"val": f" ^v {rng.choice((1, 2, '?x'))}", "b1": f" ^w {rng.choice((1, 2))}"}
+            values = {"val": f" ^v {rng.choice(valued)}", "b1": f" ^w {rng.choice((1, 2))}"}
             return f"({name} {' '.join(args)}{values.get(name, '')})"
         args = [arg if rng.random() < 0.7 else "?_any" for arg in args]
         value = f" ^v {rng.choice((1, 2))}" if name == "val" and rng.random() < 0.3 else ""

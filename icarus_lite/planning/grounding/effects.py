@@ -68,45 +68,55 @@ class Effects:
             deletes = tuple([n for n in removed if n not in made and n not in constant])
             return Instance(self._clause, row, conditions, adds, deletes)
         instance = Instance(self._clause, row, conditions, (), ())
-        self._add(instance, made[: self._count])
-        self._end(instance, made[: self._count], removed)
+        replaced = self._add(instance, made[: self._count])
+        self._end(instance, made[: self._count], removed, replaced)
         if self._clause.attaching is not None:
             self._attach(instance)
         if instance.expected or instance.ended:
             self._put_off(instance)
         return instance
 
-    def _add(self, instance: Instance, made: Sequence[int]) -> None:
-        """Say what is made true, and on which condition."""
+    def _add(self, instance: Instance, made: Sequence[int]) -> list[int]:
+        """Say what is made true, and on which condition.
+
+        Returns:
+            The same beliefs with other attributes: what is asserted anew takes their place.
+        """
         problem, merged = self._problem, self._merged
-        adds, expected, valued = list[int](), list[int](), list[int]()
-        expecting: set[int] = set()
+        adds, expected, replaced = list[int](), list[int](), list[int]()
+        settled: set[int] = set()
         for asserted in made:
             number = merged.stands_for.get(asserted, asserted)
             name, args, _ = problem.atoms[number]
             if number in problem.constant:
                 continue
+            variants = problem.variants.get(number, (number,))
+            if not settled.isdisjoint(variants):
+                continue  # of several values the first is meant
+            settled.add(number)
             if name.startswith(GIVEN):
-                if not expecting.isdisjoint(problem.variants.get(number, (number,))):
-                    continue  # of several values the first is meant
                 expected.append(number)
-                expecting.add(number)
                 undenied = merged.undenied.get((plain(name), args))
                 adds += [] if undenied is None else [undenied]
-            elif number not in problem.variants:
+            elif problem.constant.isdisjoint(variants):  # what is perceived keeps its attributes
                 adds.append(number)
-            elif problem.constant.isdisjoint(problem.variants[number]):
-                valued.append(number)
-        instance.adds = tuple(dict.fromkeys(adds))
-        instance.expected, instance.valued = tuple(expected), tuple(valued)
+                replaced += [each for each in variants if each != number]
+        instance.adds, instance.expected = tuple(dict.fromkeys(adds)), tuple(expected)
+        return replaced
 
-    def _end(self, instance: Instance, made: Sequence[int], removed: Sequence[int]) -> None:
-        """Say what is ended: what effects add as well is not."""
+    def _end(
+        self,
+        instance: Instance,
+        made: Sequence[int],
+        removed: Sequence[int],
+        replaced: Sequence[int],
+    ) -> None:
+        """Say what is ended: what effects add as well is not, except with other attributes."""
         problem, merged, row = self._problem, self._merged, instance.row
         added = {(plain(problem.atoms[n][0]), problem.atoms[n][1]) for n in made}
         added.update((ATTACHED, pair) for pair in self._asserted_pairs(row))
         derived = self._removals.derived(row) if self._removals is not None else []
-        deletes, ended = list[int](), list[tuple[int, int]]()
+        deletes, ended = list[int](replaced), list[tuple[int, int]]()
         for asserted in (*removed, *derived):
             name, args, _ = problem.atoms[asserted]
             number = merged.stands_for.get(asserted, asserted)

@@ -39,7 +39,6 @@ class Instance:
             `Attach` the number of the pair, for a `Detach` the numbers of all it may end.
         expected: For beliefs that concepts may derive as well: the fact that it is asserted.
         ended: Likewise for what it ends: the derived fact, and that nothing has ended it.
-        valued: The facts it makes true unless the belief holds with another value.
     """
 
     clause: GroundedClause
@@ -50,19 +49,16 @@ class Instance:
     hierarchy: tuple[NumberedEvent, ...] = ()
     expected: tuple[int, ...] = ()
     ended: tuple[tuple[int, int], ...] = ()
-    valued: tuple[int, ...] = ()
 
     @property
     def depends_on_state(self) -> bool:
         """Whether what it does may depend on the state."""
-        return bool(self.hierarchy or self.expected or self.ended or self.valued)
+        return bool(self.hierarchy or self.expected or self.ended)
 
     @property
     def effects(self) -> tuple[object, ...]:
         """What it does."""
-        return (
-            self.adds, self.deletes, self.hierarchy, self.expected, self.ended, self.valued,
-        )  # fmt: skip
+        return self.adds, self.deletes, self.hierarchy, self.expected, self.ended
 
 
 @dataclass(frozen=True, slots=True)

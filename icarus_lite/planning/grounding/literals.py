@@ -98,6 +98,7 @@ class Translation:
     def _find_constants(self, skills: Sequence[GroundedClause]) -> None:
         """Find the asserted facts that hold now and that nothing ends."""
         ended: set[int] = set()
+        variants = self._result.variants
         for clause in skills:
             found = self._reached.found[clause.number]
             removals = self._removals.get(clause.number)
@@ -107,6 +108,11 @@ class Translation:
             if clause.attaching is not None:
                 for row, _, _ in found:
                     ended.update(self._forest.may_end(self._forest.events(clause, row)))
+            if variants:  # what is asserted anew takes the place of what was asserted before
+                for _, _, made in found:
+                    for number in made:
+                        if not self._base.atoms[number][0].startswith(GIVEN):
+                            ended.update(n for n in variants.get(number, ()) if n != number)
         self._result.constant = (self._result.initial - ended) | self._reached.permanent
 
     # What concepts derive.

@@ -58,7 +58,7 @@ def _settle(problem: Literals) -> set[int]:
     constant, derivations = problem.constant, problem.derivations
     made = set(problem.initial).union(constant)
     for each in problem.instances:
-        made.update(each.adds, each.expected, each.valued)
+        made.update(each.adds, each.expected)
         made.update(*(numbers for _, numbers in each.hierarchy))
     impossible = {
         number
@@ -131,7 +131,7 @@ class _Makers:
                 makes.setdefault(number, []).append(place)
             for number in each.deletes:
                 ends.setdefault(number, []).append(place)
-            for number in (*each.valued, *each.expected):
+            for number in each.expected:
                 makes.setdefault(number, []).append(place)
             for _, undenied in each.ended:
                 ends.setdefault(undenied, []).append(place)

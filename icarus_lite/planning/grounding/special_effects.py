@@ -75,8 +75,6 @@ class Special:
     Args:
         links: The attachment hierarchy.
         hierarchy: What it attaches, a bit and the child, or detaches, bits and None; in order.
-        valued: For each fact it asserts that has rivals with other values: its bit, the bit of
-            its complement, and the bits of them all.
         expected: For each belief it asserts that concepts may derive: the bit that it is
             asserted, its complement, and the bits of the belief with whatever value.
         ended: For each belief it ends that concepts may derive: its bit, the bit that it has not
@@ -86,7 +84,6 @@ class Special:
 
     links: Links
     hierarchy: tuple[tuple[State, Value | None], ...]
-    valued: tuple[tuple[State, State, State], ...]
     expected: tuple[tuple[State, State, State], ...]
     ended: tuple[tuple[State, State, State], ...]
     closing: Closing | None
@@ -98,9 +95,6 @@ class Special:
                 state = self.links.without(state, link)
             else:
                 state = self.links.attach(state, link, child)
-        for fact, complement, rivals in self.valued:
-            if not state & rivals:
-                state = (state | fact) & ~complement
         closed = state if self.closing is None else self.closing(state)
         changed = closed
         for asserted, complement, belief in self.expected:
@@ -116,7 +110,6 @@ class Special:
 
 def special_effects(
     instance: Instance,
-    problem: Literals,
     bits: Bits,
     links: Links,
     closing: Closing | None,
@@ -126,7 +119,6 @@ def special_effects(
 
     Args:
         instance: The operator.
-        problem: The problem.
         bits: Which bit is which.
         links: The attachment hierarchy.
         closing: Brings derived facts up to date.
@@ -141,11 +133,6 @@ def special_effects(
         mask = bits.mask(numbers)
         if mask:
             hierarchy.append((mask, child))
-    valued = [
-        (masks[number], masks.get(~number, 0), bits.mask(problem.variants[number]))
-        for number in instance.valued
-        if number in masks
-    ]
     expected = [
         (masks[number], masks.get(~number, 0), bits.mask(beliefs.get(number, (number,))))
         for number in instance.expected
@@ -156,6 +143,6 @@ def special_effects(
         for belief, undenied in instance.ended
         if belief in masks and undenied in masks
     ]
-    if not (hierarchy or valued or expected or ended):
+    if not (hierarchy or expected or ended):
         return None
-    return Special(links, tuple(hierarchy), tuple(valued), tuple(expected), tuple(ended), closing)
+    return Special(links, tuple(hierarchy), tuple(expected), tuple(ended), closing)

@@ -174,10 +174,10 @@ def _operators(
         for number in each.deletes:
             gone |= masks.get(number, 0)
             add |= masks.get(~number, 0)
-        special = special_effects(each, problem, bits, links, closing, beliefs)
+        special = special_effects(each, bits, links, closing, beliefs)
         possible = add
         if special is not None:
-            possible |= bits.mask((*each.valued, *each.expected))
+            possible |= bits.mask(each.expected)
             possible |= bits.opposite(undenied for _, undenied in each.ended)
             for _, numbers in each.hierarchy:
                 possible |= bits.mask(numbers) | bits.opposite(problem.hierarchy)

@@ -3,10 +3,12 @@ from __future__ import annotations
 import random
 
 from icarus_lite.planning import Plan, find_plan
+from icarus_lite.planning.ground_task import GroundAtom, GroundOperator, GroundTask
 from icarus_lite.planning.grounding import ground_task
 from icarus_lite.planning.lower_bound import at_least
 from icarus_lite.planning.search import search
 from icarus_lite.planning.shortest import shorter_plan
+from icarus_lite.symbols import Belief
 from tests.icarus_lite.planning.grounding.test_task import HANDS, task
 from tests.reference.ground_walks import breadth_first, imagined, random_goals
 from tests.reference.skill_domains import SkillDomain
@@ -48,6 +50,13 @@ def test_no_plan_is_shorter_than_the_bound() -> None:
         assert isinstance(found, Plan)
         assert len(found.steps) == length, f"seed {seed}"
     assert compared >= 10
+
+
+def test_a_step_that_needs_the_same_atom_twice_waits_for_it() -> None:
+    some = task(HANDS, "(on o0 o1)").operators[0].step
+    free, twice = GroundOperator(some, (), 1, ~0, 1), GroundOperator(some, (0, 0), 4, ~0, 4)
+    ground = GroundTask(tuple(GroundAtom(Belief(name)) for name in "abc"), 2, (2,), (free, twice))
+    assert shorter_plan(ground, (0, 1), 1_000) == ((0, 1), True)
 
 
 def test_a_shorter_plan_is_found_and_a_shortest_one_is_known_to_be() -> None:

@@ -3,7 +3,12 @@ from __future__ import annotations
 import pytest
 from talking import ask, live
 
+from icarus_lite import Action, Outcome, Percept
+from icarus_lite.inference import InferenceEngine, Memory
+from icarus_lite.language import parse_domain
+from icarus_lite.symbols import Belief
 from runtime.repl import CommandError, Session
+from runtime.repl.supposing import Edit, Supposition
 
 
 @pytest.fixture
@@ -91,3 +96,17 @@ def test_what_cannot_be_supposed(session: Session, line: str, message: str) -> N
 def test_a_circle_is_refused_with_a_note(session: Session) -> None:
     text = ask(session, "assume (attached hand1 hubcover)")
     assert "refused: (assumed) would attach hand1 to hubcover" in text
+
+
+def test_what_is_supposed_of_a_persisting_belief_has_the_values_that_were_said() -> None:
+    domain, problems = parse_domain(
+        "(percepts (block)) (concepts ((blue ?b) :elements ((painted ?b ^colour blue))))"
+        "(skills ((redden ?b) :elements ((block ?b)) :actions ((*paint ?b))"
+        " :effects ((painted ?b ^colour red))))"
+    )
+    assert domain is not None, problems
+    engine, seen = InferenceEngine(domain), [Percept("block", "b")]
+    memory = engine.step(engine.step(Memory(), seen), seen, [Outcome(Action("redden", ("b",)))])
+    blue = Edit(Belief("painted", ("b",), {"colour": "blue"}), assumed=True)
+    supposed = Supposition((blue,)).applied(memory, engine)
+    assert Belief("blue", ("b",)) in supposed.state

@@ -23,21 +23,22 @@ def test_states_of_our_domains_are_what_imagination_has(name: str) -> None:
     assert states > 40
 
 
-@pytest.mark.parametrize("valued", [0.0, 1.0])
-def test_states_of_random_domains_are_what_imagination_has(valued: float) -> None:
+@pytest.mark.parametrize(("valued", "anew"), [(0.0, False), (1.0, False), (0.3, True)])
+def test_states_of_random_domains_are_what_imagination_has(valued: float, *, anew: bool) -> None:
     states = 0
     for seed in range(40):
         rng = random.Random(seed)
-        start = SkillDomain(rng, valued).draw()
+        start = SkillDomain(rng, valued, anew=anew).draw()
         states += walk(start.engine, start.memory, rng, 20)
     assert states > 400
 
 
-def test_a_plan_is_found_wherever_there_is_one_and_never_elsewhere() -> None:
+@pytest.mark.parametrize("anew", [False, True])
+def test_a_plan_is_found_wherever_there_is_one_and_never_elsewhere(*, anew: bool) -> None:
     found = {"plans": 0, "none": 0}
     for seed in range(60):
         rng = random.Random(seed)
-        start = SkillDomain(rng).draw()
+        start = SkillDomain(rng, anew=anew).draw()
         domain = start.engine.domain
         imagination = imagined(start.engine, start.memory)
         goals = random_goals(imagination, domain, rng, rng.randint(1, 5))
