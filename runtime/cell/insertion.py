@@ -116,6 +116,20 @@ class Insertion:
                     spun_rad = 0.0  # that was before it was in
         return self._turn(name, tool, spun_rad)
 
+    def sunk_m(self, name: str) -> float:
+        """Give how far the part is below its place in a seat that it is in line with, m.
+
+        So far have part, seat and fingers given way: it tells how hard it is pressed home, also
+        where the force that was measured last is the one of another moment.
+        """
+        x, y, z = self._arrangement.part(name).position
+        sunk = (
+            opening.floor_m - z
+            for opening in self.openings(name)
+            if opening.seat.thread is None and opening.beside_m(x, y) <= opening.seat.clearance_m
+        )
+        return max([0.0, *sunk])
+
     def snapshot(self) -> list[list[object]]:
         """Give what was decided of each pair of parts: jam, m, and binding thread, rad."""
         return [

@@ -14,7 +14,7 @@ from typing import Any, Final
 import numpy as np
 
 from runtime.cell.arrangement import FIXTURE, Arrangement, PlacedPart
-from runtime.cell.contact import Contact, Feeling
+from runtime.cell.contact import STIFFNESS_N_M, Contact, Feeling
 from runtime.cell.fingers import UPRIGHT, between_fingers, pushed_aside
 from runtime.cell.insertion import Insertion
 from runtime.cell.keeping import HeldPart, parts_from_json, parts_to_json
@@ -245,7 +245,8 @@ class World:
         if not _upright(tool):
             return
         down_n = self._pressed_n()
-        stays = self._insertion.follow(name, tool, max(force_n, down_n or 0.0), spun_rad)
+        home_n = STIFFNESS_N_M * self._insertion.sunk_m(name)
+        stays = self._insertion.follow(name, tool, max(force_n, down_n or 0.0, home_n), spun_rad)
         if stays:
             self._slip_off(name)
             return

@@ -144,6 +144,7 @@ def test_let_go_in_the_air_it_falls_to_the_table(world):
     [
         (0.0, -0.0006, True),
         (0.0007, -0.0012, True),  # at the foot of the wall
+        (0.00055, -0.0005, True),  # against it: it tells less of the force than the depth
         (0.0020, -0.0006, False),  # still on the broken edge
         (0.0, 0.0010, False),  # nothing has pressed it in
         (0.0, 0.0030, False),
