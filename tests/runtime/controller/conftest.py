@@ -101,8 +101,9 @@ def shared_rig(request) -> Iterator[Rig]:
 
 @pytest.fixture
 def rig(shared_rig) -> Rig:
-    """The shared rig, back at its start, its program running."""
-    assert shared_rig.control.isProgramRunning()
+    """The shared rig, back at its start, its program running, whatever the test before left."""
+    shared_rig.process.bench({"contact": None})
+    shared_rig.recover()
     assert shared_rig.control.moveJ(HOME, 3.0, 20.0)
     assert shared_rig.reached(HOME)
     return shared_rig

@@ -140,11 +140,20 @@ def test_a_move_until_contact_ends_where_it_began(rig, wait):
     assert rig.control.moveL(moved(rig.receive.getActualTCPPose(), dz=-0.05), 0.05, 1.0, True)
 
     # Not asked meanwhile: a question that is just being answered can swallow the client's stop.
-    def back_at_the_surface():
-        near = rig.receive.getActualTCPPose()[2] == pytest.approx(height, abs=2e-4)
-        return near and not any(rig.receive.getActualQd())
+    # It stops first and then goes back, so that one reading without speed may be too early.
+    since = None
 
-    wait(back_at_the_surface, 15)
+    def rests_at_the_surface():
+        nonlocal since
+        near = rig.receive.getActualTCPPose()[2] == pytest.approx(height, abs=2e-4)
+        now = rig.receive.getTimestamp()
+        if not near or any(rig.receive.getActualQd()):
+            since = None
+        elif since is None:
+            since = now
+        return since is not None and now - since > 0.5
+
+    wait(rests_at_the_surface, 15)
     assert rig.control.readContactDetection()
     assert rig.control.stopContactDetection()
     assert rig.control.isProgramRunning()
