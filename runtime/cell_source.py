@@ -31,10 +31,13 @@ class Wires:
     Args:
         feel: Tells the gripper's sensor whether a part is between the fingers.
         touch: Tells the controller what the tool would touch; None where nothing feels forces.
+        followed: Tells it that the cell is where the arm is, so that it waits for a late one; None
+            where nothing can run ahead.
     """
 
     feel: Callable[[bool], None]
     touch: Callable[[Contact | None], None] | None = None
+    followed: Callable[[], None] | None = None
 
 
 class CellSource:
@@ -68,6 +71,8 @@ class CellSource:
             if contact is not self._contact:
                 self._wires.touch(contact)
                 self._contact = contact
+        if self._wires.followed is not None:
+            self._wires.followed()
 
     def look(self) -> tuple[list[Detection], Camera]:
         """Give the next frame's detections and the camera that took it."""

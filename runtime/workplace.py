@@ -14,7 +14,7 @@ from runtime.cell import Cell, CellParameters
 from runtime.cell.contact import Contact
 from runtime.cell_source import CellSource, Wires
 from runtime.config import RobotConfig, load_robot
-from runtime.controller.bench_client import BenchClient
+from runtime.controller.bench_client import BenchClient, BenchTeller
 from runtime.controller.process import ControllerProcess
 from runtime.drivers import Driver, DryRunDriver, UrDriver
 from runtime.errors import ControllerError, UsageError
@@ -177,11 +177,15 @@ def _body(
         bench({"outputs": {f"tool_digital_out_{config.gripper.output}": True}})
     note = None if log is None else stack.enter_context(_log_file(log.with_suffix(".driver.log")))
     driver = UrDriver(address, config, parts, log=note)
+    teller = BenchTeller(address, {"followed": True})
+    stack.callback(teller.close)
     words = f"simulated cell; stand-in controller (not a robot) at {address}"
-    return _Body(driver, _wires(bench, config), words, controller)
+    return _Body(driver, _wires(bench, teller, config), words, controller)
 
 
-def _wires(bench: Callable[[Mapping[str, object]], object], config: RobotConfig) -> Wires:
+def _wires(
+    bench: Callable[[Mapping[str, object]], object], teller: BenchTeller, config: RobotConfig
+) -> Wires:
     """Wire the cell to a stand-in controller's bench."""
     sensor = f"tool_digital_in_{config.gripper.input}"
 
@@ -191,7 +195,7 @@ def _wires(bench: Callable[[Mapping[str, object]], object], config: RobotConfig)
     def touch(contact: Contact | None) -> None:
         bench({"contact": None if contact is None else contact.request()})
 
-    return Wires(feel, touch)
+    return Wires(feel, touch, teller.tell)
 
 
 @contextmanager

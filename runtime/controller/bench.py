@@ -9,6 +9,8 @@ Each request is one JSON object on one line, and gets one line back: `{"ok": tru
 - `{"contact": {"origin": [x, y], "step_m": s, "heights": [[z, …], …], "stiffness_n_m": k,
   "thread": null}}` is what the tool touches: see `runtime.controller.contact`; null for nothing.
 - `{"wrench": [fx, fy, fz, mx, my, mz]}` is what presses on the tool, N and Nm, base frame.
+- `{"followed": true}` says that whoever moves a simulated world after the arm has just done so:
+  from then on the arm waits for them, see `runtime.controller.following`; false ends that.
 - `{"fault": {…}}` lets something go wrong at once, with any of `protective_stop: true`,
   `emergency_stop: true|false` (pressed, released), `kill_script: true`, `drop_rtde: true`,
   `drop_dashboard: true`, `silence: seconds` of wall time in which nothing runs and nothing
@@ -22,6 +24,7 @@ Each request is one JSON object on one line, and gets one line back: `{"ok": tru
 from __future__ import annotations
 
 import json
+import time
 from collections.abc import Callable, Mapping
 from typing import Any, Final
 
@@ -30,6 +33,7 @@ from runtime.controller.contact import ContactError, parse_contact
 from runtime.controller.control_box import ControlBox
 from runtime.controller.fault_actions import FaultActions, FaultSchedule
 from runtime.controller.faults import parse_faults
+from runtime.controller.following import Following
 from runtime.controller.ports import BANNER
 from runtime.controller.signals import SignalError, parse_digital
 from runtime.errors import ConfigError
@@ -48,11 +52,13 @@ class BenchServer:
     Args:
         box: The control box on the bench.
         actions: Lets things go wrong.
+        following: Whether anybody moves a world after the arm.
     """
 
-    def __init__(self, box: ControlBox, actions: FaultActions) -> None:
+    def __init__(self, box: ControlBox, actions: FaultActions, following: Following) -> None:
         self._box = box
         self._actions = actions
+        self._following = following
         self.schedule = FaultSchedule((), box, actions.act)
         """What is still to go wrong."""
         self._requests: dict[str, Callable[[Any], dict[str, Any]]] = {
@@ -61,6 +67,7 @@ class BenchServer:
             "outputs": self._outputs,
             "contact": self._contact,
             "wrench": self._wrench,
+            "followed": self._followed,
             "fault": self._fault,
             "faults": self._schedule,
             "query": self._query,
@@ -121,6 +128,13 @@ class BenchServer:
     def _wrench(self, wrench: Any) -> dict[str, Any]:
         fx, fy, fz, mx, my, mz = _numbers("wrench", wrench, 6)
         self._box.arm.external_wrench = (fx, fy, fz, mx, my, mz)
+        return {}
+
+    def _followed(self, on: Any) -> dict[str, Any]:
+        if _truth("followed", on):
+            self._following.looked(time.monotonic())
+        else:
+            self._following.ended()
         return {}
 
     def _query(self, what: Any) -> dict[str, Any]:

@@ -1,7 +1,8 @@
-"""Talking to the bench of a stand-in controller, whoever started it."""
+"""Talking to the bench of a stand-in controller, whoever started it: asking, or just telling."""
 
 from __future__ import annotations
 
+import contextlib
 import json
 import socket
 import threading
@@ -67,6 +68,43 @@ class BenchClient:
             self._drop()
 
     def _drop(self) -> None:
+        if self._socket is not None:
+            self._socket.close()
+            self._socket = None
+
+
+class BenchTeller:
+    """Tells a bench one thing again and again, and never waits for it.
+
+    Args:
+        address: The controller's host.
+        request: What it is told.
+    """
+
+    __slots__ = ("_line", "_socket", "address")
+
+    def __init__(self, address: str, request: Mapping[str, Any]) -> None:
+        self.address: Final = address
+        self._line = json.dumps(dict(request)).encode() + b"\n"
+        self._socket: socket.socket | None = None
+
+    def tell(self) -> None:
+        """Tell it. Never raises: that a controller is gone is for others to notice."""
+        try:
+            if self._socket is None:
+                self._socket = socket.create_connection(
+                    (self.address, BENCH_PORT), timeout=_ANSWER_WITHIN_S
+                )
+                self._socket.settimeout(0)
+            with contextlib.suppress(BlockingIOError):
+                while self._socket.recv(65536):
+                    pass  # what it answered to earlier ones
+            self._socket.sendall(self._line)
+        except OSError:
+            self.close()
+
+    def close(self) -> None:
+        """Close the connection; the next telling would open it again."""
         if self._socket is not None:
             self._socket.close()
             self._socket = None

@@ -17,6 +17,7 @@ from runtime.controller.control_box import ControlBox
 from runtime.controller.dashboard import DashboardServer
 from runtime.controller.fault_actions import FaultActions, FaultSchedule
 from runtime.controller.faults import Fault
+from runtime.controller.following import Following
 from runtime.controller.ports import BENCH_PORT, DASHBOARD_PORT, RTDE_PORT, SCRIPT_PORTS
 from runtime.controller.rtde_server import RtdeServer
 from runtime.controller.script_server import ScriptServer
@@ -36,7 +37,8 @@ class Settings:
     Args:
         model: The arm.
         address: Where to listen.
-        clock: Control cycles of robot time per control period of wall time, > 0.
+        clock: Control cycles of robot time per control period of wall time, > 0; fewer while a
+            simulated cell has to be waited for, see `runtime.controller.following`.
         joints: Where the arm stands at first, rad.
         parent: The process whose end is this one's too; None to live alone.
         version: The PolyScope version to play; None takes the usual one for the arm.
@@ -73,7 +75,8 @@ class Controller:
         self._rtde = RtdeServer(box)
         dashboard = DashboardServer(box)
         self._actions = FaultActions(box, self._rtde, dashboard)
-        self._bench = BenchServer(box, self._actions)
+        self._following = Following(box)
+        self._bench = BenchServer(box, self._actions, self._following)
         self._bench.schedule = FaultSchedule(settings.faults, box, self._actions.act)
         self._stopping = False
         self._parent_is_there = _parent_watch(settings.parent)
@@ -122,7 +125,7 @@ class Controller:
         return 0
 
     def _advance(self) -> None:
-        self._owed_cycles += self._settings.clock
+        self._owed_cycles += self._following.pace(self._settings.clock, time.monotonic())
         while self._owed_cycles >= 1.0:
             self._owed_cycles -= 1.0
             self._box.cycle()

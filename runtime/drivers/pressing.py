@@ -3,8 +3,10 @@
 What a blind hand does. The tool comes down gently, yielding to every slope, until it stands on
 something. If that is higher than the seat, it presses harder for a moment; if it goes no further,
 it is drawn over the place in a widening spiral, pressed lightly, until it drops. It counts as
-seated only when it is as low as expected and the force that seats it was measured. Standing too
-high, it found no opening; standing there after a drop, or held at its sides, it is jammed.
+seated only when the force that seats it was measured and it stays as low as expected once the hand
+lets up: fingers, part and seat give way under force, and what sticks on its way comes back up.
+Standing too high, it found no opening; standing there after a drop, held at its sides, or coming
+back, it is jammed.
 """
 
 from __future__ import annotations
@@ -30,6 +32,7 @@ _EXTRA_N: Final = 1.0  # so that it is reached for certain
 _REACHED: Final = 0.95  # of it counts
 _HOME_FOR_S: Final = 0.2
 _HOME_WITHIN_S: Final = 3.0
+_LET_UP_WITHIN_S: Final = 2.0
 _HARDER_FOR_S: Final = 0.8  # before a part that stands too high is drawn about
 _SIDEWAYS: Final = 0.6  # of the force downward at most: a chamfer must not be climbed again
 _ARC_M: Final = 0.001  # along the spiral at most between two readings
@@ -42,6 +45,7 @@ class _Phase(Enum):
     HARDER = auto()
     SEARCH = auto()
     HOME = auto()
+    LETTING_UP = auto()
 
 
 class Pressing:
@@ -68,6 +72,14 @@ class Pressing:
         self._angle = 0.0
         self._went_m = 0.0
         self._home_s = 0.0
+        self._pressed_n = 0.0  # what it was pressed home with
+        self._goes_on: Final = {
+            _Phase.DOWN: self._down,
+            _Phase.HARDER: self._press_harder,
+            _Phase.SEARCH: self._search,
+            _Phase.HOME: self._press_home,
+            _Phase.LETTING_UP: self._let_up,
+        }
 
     def next(self, reading: Reading) -> Push | Finish:
         """Say what to do now, or that it has ended."""
@@ -78,15 +90,7 @@ class Pressing:
             below = (self._home_z - reading.pose[2]) * 1000
             return self._failed(f"it went {below:.1f} mm below its seat and met nothing", reading)
         self._phase_s += self._watch.step_s
-        match self._phase:
-            case _Phase.DOWN:
-                return self._down(reading)
-            case _Phase.HARDER:
-                return self._press_harder(reading)
-            case _Phase.SEARCH:
-                return self._search(reading)
-            case _Phase.HOME:
-                return self._press_home(reading)
+        return self._goes_on[self._phase](reading)
 
     def _down(self, reading: Reading) -> Push | Finish:
         if self._stands(reading):
@@ -128,7 +132,8 @@ class Pressing:
         pressed = reading.press_n >= _REACHED * self._step.press_n and self._is_low(reading)
         self._home_s = self._home_s + self._watch.step_s if pressed else 0.0
         if self._home_s >= _HOME_FOR_S:
-            return Finish("", Felt(self._words(reading)))
+            self._pressed_n = reading.press_n
+            return self._to(_Phase.LETTING_UP)
         if self._phase_s > _HOME_WITHIN_S:
             return self._failed(
                 f"could not be pressed home: {reading.press_n:.0f} of {self._step.press_n:g} N "
@@ -136,6 +141,15 @@ class Pressing:
                 reading,
             )
         return self._push((0.0, 0.0), self._press_n)
+
+    def _let_up(self, reading: Reading) -> Push | Finish:
+        """Press no harder than on the way down, and look whether it has stayed where it was."""
+        if not self._watch.stands() and self._phase_s <= _LET_UP_WITHIN_S:
+            return self._push((0.0, 0.0), self._force.descent_n)
+        if self._is_low(reading):
+            return Finish("", Felt(self._words(reading, self._pressed_n)))
+        back = f"it gave way to {self._pressed_n:.0f} N and came back"
+        return self._failed(f"jammed {self._above(reading, force=True)}: {back}", reading)
 
     @property
     def _press_n(self) -> float:
@@ -183,10 +197,11 @@ class Pressing:
         where = f"{abs(above):.1f} mm {'above' if above > 0 else 'below'} its seat"
         return f"{where} at {reading.press_n:.0f} N" if force else where
 
-    def _words(self, reading: Reading) -> str:
+    def _words(self, reading: Reading, press_n: float | None = None) -> str:
+        pressed_n = reading.press_n if press_n is None else press_n
         off = (reading.pose[2] - self._home_z) * 1000
         aside = math.dist(self._place, reading.pose[:2]) * 1000
         return (
-            f"pressed with {reading.press_n:.0f} N, {off:+.1f} mm from the height and "
+            f"pressed with {pressed_n:.0f} N, {off:+.1f} mm from the height and "
             f"{aside:.1f} mm beside the place expected, in {self._watch.elapsed_s:.1f} s"
         )

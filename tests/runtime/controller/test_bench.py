@@ -11,6 +11,7 @@ from runtime.controller.bench import BenchServer
 from runtime.controller.control_box import ControlBox
 from runtime.controller.dashboard import DashboardServer
 from runtime.controller.fault_actions import FaultActions
+from runtime.controller.following import Following
 from runtime.controller.rtde_server import RtdeServer
 from runtime.kinematics import UR5
 
@@ -27,7 +28,7 @@ def actions(box):
 
 @pytest.fixture
 def bench(box, actions):
-    return BenchServer(box, actions)
+    return BenchServer(box, actions, Following(box))
 
 
 def ask(bench, **request):
@@ -117,6 +118,7 @@ def test_the_journal_is_told(bench, box):
         ({"inputs": 5}, '"inputs" takes an object'),
         ({"outputs": {"tool_digital_in_0": True}}, "there is no output 'tool_digital_in_0'"),
         ({"contact": {"origin": [0, 0]}}, '"contact" lacks "step_m"'),
+        ({"followed": "yes"}, '"followed" takes true or false'),
         ({"faults": [{"fault": "die"}]}, "entry 1: when: None"),
         ({"faults": {"schedule": [], "seed": "x"}}, '"seed" takes a number'),
     ],
@@ -130,5 +132,6 @@ def test_a_wrong_request_is_answered_with_what_is_right(bench, request_, words):
 @given(st.binary(max_size=60))
 def test_garbage_is_answered(garbage):
     box = ControlBox(UR5, lambda: 0.0, HOME)
-    bench = BenchServer(box, FaultActions(box, RtdeServer(box), DashboardServer(box)))
+    actions = FaultActions(box, RtdeServer(box), DashboardServer(box))
+    bench = BenchServer(box, actions, Following(box))
     assert bench.answer(garbage)["ok"] is False
