@@ -200,9 +200,12 @@ class SteppingDriver(ABC):
             run.note = f"{abs(turned) / (2 * math.pi):.2f} turns in all, the last {felt.words}"
             stalled = felt.stalled or bool(step.failure and ended.reason)
             failure = step.failure or ended.reason
+            sunk_m = (run.progress.sunk_m or 0.0) + felt.sunk_m
             run.plan_anew(
                 step.then,
-                Progress(looked=True, turned_rad=turned, stalled=stalled, failure=failure),
+                Progress(
+                    looked=True, turned_rad=turned, stalled=stalled, failure=failure, sunk_m=sunk_m
+                ),
             )
         elif isinstance(step, Press) and ended.reason:
             run.plan_anew(step.then, replace(run.progress, looked=True, failure=ended.reason))

@@ -192,11 +192,13 @@ class Felt:
         words: The figures, for the outcome.
         turned_rad: How far the tool has turned, clockwise seen from above, rad.
         stalled: Whether the torque at which it stops was reached.
+        sunk_m: How far the tool has gone down while it turned.
     """
 
     words: str = ""
     turned_rad: float = 0.0
     stalled: bool = False
+    sunk_m: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -208,12 +210,14 @@ class Progress:
         turned_rad: How far a screw has been turned, clockwise, rad; None: that has not begun.
         stalled: Whether the last turn was ended by its torque, or backing out has failed.
         failure: Why the command has failed; what is left is to come away. Empty: it has not.
+        sunk_m: How far it has gone down while it was turned; None: that was not measured.
     """
 
     looked: bool = False
     turned_rad: float | None = None
     stalled: bool = False
     failure: str = ""
+    sunk_m: float | None = None
 
 
 GUARDED_M_S: Final = 0.08

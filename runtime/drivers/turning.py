@@ -121,12 +121,12 @@ class Turning:
 
     def _felt(self, reading: Reading, first: Reading, *, stalled: bool = False) -> Felt:
         turned = self._sense * self._turned(reading, first)
-        sunk = (first.pose[2] - reading.pose[2]) * 1000
+        sunk_m = first.pose[2] - reading.pose[2]
         words = (
             f"{_turns(abs(turned))} at {abs(reading.wrench[5]):.1f} Nm, "
-            f"{abs(sunk):.1f} mm {'down' if sunk >= 0 else 'up'}"
+            f"{abs(sunk_m) * 1000:.1f} mm {'down' if sunk_m >= 0 else 'up'}"
         )
-        return Felt(words, turned, stalled)
+        return Felt(words, turned, stalled, sunk_m)
 
 
 def _turns(angle_rad: float) -> str:

@@ -29,6 +29,7 @@ _WRIST_MARGIN: Final = 0.3  # rad kept from the joint limit: force mode has no b
 _LEAST_STROKE: Final = 0.8  # rad; for less the hand takes hold anew first
 _EARLY: Final = 0.5 * _TURN  # tight before that much is left, the thread is crossed
 _LATE: Final = 1.5 * _TURN  # where a thread begins to bite is not known; later, it is stripped
+_CATCHES: Final = 0.5  # of the way down that its pitch explains: with less it only turns
 _FREE: Final = 0.6  # rad beyond its turns after which a part is out of its thread
 _BACK: Final = 0.2  # rad left when backing out counts as done
 _STAND_M: Final = 0.003  # how far a part may stand from where its thread should begin
@@ -113,6 +114,13 @@ def _go_on(planner: Planner, thread: ScrewThread, part: PartModel, turned: float
         )
     elif not failure and turned >= whole + _LATE - _BACK:
         failure = f"it turns freely after {turned / _TURN:.1f} of {thread.turns:g} turns"
+    elif not failure and not tight and _only_turns(planner, thread, turned):
+        down = f"{(progress.sunk_m or 0.0) * 1000:.1f} mm down after {turned / _TURN:.1f} turns"
+        failure = f"its thread does not catch: {down}"
+        if (progress.sunk_m or 0.0) < thread.pitch_m / 2:
+            planner.lift()
+            planner.steps.append(GiveUp(f"{failure}; it is still held"))
+            return
     if failure:
         _back_out(planner, thread, part, turned, failure)
     elif tight:
@@ -121,6 +129,15 @@ def _go_on(planner: Planner, thread: ScrewThread, part: PartModel, turned: float
         left = whole - turned
         _regrip(planner, part, clockwise=True, left_rad=left + _LATE)
         _turn(planner, thread, clockwise=True, angle_rad=left, most_rad=left + _LATE)
+
+
+def _only_turns(planner: Planner, thread: ScrewThread, turned: float) -> bool:
+    """Tell whether a screw has gone down much less than its thread would take it."""
+    sunk_m = planner.progress.sunk_m
+    in_thread = turned - _LATE
+    if sunk_m is None or in_thread <= 0:
+        return False
+    return sunk_m < _CATCHES * thread.pitch_m * in_thread / _TURN
 
 
 def _back_out(

@@ -111,6 +111,8 @@ def test_it_turns_no_farther_than_asked(config):
     )
     assert finish.felt.turned_rad == pytest.approx(-2.0, abs=0.05)
     assert not finish.felt.stalled
+    risen_m = screw.pitch * -finish.felt.turned_rad / (2 * math.pi)
+    assert finish.felt.sunk_m == pytest.approx(-risen_m, abs=0.0005)
 
 
 def test_what_does_not_follow_its_thread_has_failed(config):

@@ -141,6 +141,33 @@ def test_a_screw_that_never_gets_tight_is_backed_out(on_thread):
     assert steps[0].failure == "it turns freely after 5.5 of 4 turns"
 
 
+def test_a_screw_that_turns_without_going_in_is_lifted_off(on_thread):
+    """A thread may bite as late as after one and a half turns; then it leads down."""
+    late = Progress(looked=True, turned_rad=1.4 * TURN, sunk_m=0.0)
+    assert kinds(on_thread(late))[-2:] == ["Turn", "Grip"]
+    steps = on_thread(Progress(looked=True, turned_rad=3.0 * TURN, sunk_m=0.0004))
+    assert kinds(steps) == ["MoveLinear", "GiveUp"]
+    assert steps[0].holding
+    words = "its thread does not catch: 0.4 mm down after 3.0 turns; it is still held"
+    assert steps[1] == GiveUp(words)
+
+
+def test_a_screw_that_went_in_a_little_is_not_torn_out(on_thread):
+    steps = on_thread(Progress(looked=True, turned_rad=3.0 * TURN, sunk_m=0.001), wrist=5.0)
+    assert isinstance(steps[0], Turn)
+    assert not steps[0].clockwise
+    assert steps[0].most_rad == pytest.approx(3.0 * TURN)
+    assert steps[0].failure.startswith("its thread does not catch: 1.0 mm down")
+
+
+@pytest.mark.parametrize("turns", [1.0, 2.0, 3.5, 5.0])
+def test_a_thread_that_bites_late_is_followed(on_thread, turns):
+    sunk_m = 0.0015 * max(0.0, turns - 1.5)
+    steps = on_thread(Progress(looked=True, turned_rad=turns * TURN, sunk_m=sunk_m))
+    assert kinds(steps)[-2:] == ["Turn", "Grip"]
+    assert steps[-2].clockwise
+
+
 def test_what_could_not_be_put_on_its_thread_comes_up_in_the_hand(on_thread):
     steps = on_thread(Progress(looked=True, failure="found no opening"), wrist=0.0)
     assert kinds(steps) == ["MoveLinear", "GiveUp"]
