@@ -10,7 +10,7 @@ from icarus_lite.inference import Period, Withdrawal, match, percept_facts, what
 from icarus_lite.language.fragments import parse_conditions
 from icarus_lite.language.percept_types import lineages
 from icarus_lite.language.syntax import Atom, Condition, Constant
-from icarus_lite.records import dataclass
+from icarus_lite.records import dataclass, replace
 from icarus_lite.symbols import Belief, Percept, Status, Value, format_value
 from icarus_lite.trace.recording import Instant, Recording
 
@@ -41,10 +41,10 @@ class Times:
 
 @dataclass(frozen=True, slots=True)
 class Changed:
-    """An attribute of an object that is perceived in both of two cycles.
+    """An attribute of what is perceived, or believed, in both of two cycles.
 
     Args:
-        name: The object.
+        name: The object, or the belief as it is written.
         attribute: The attribute.
         before: Its value in the first; None where it had none.
         after: Its value in the second; None where it has none.
@@ -71,7 +71,7 @@ class Comparison:
         removed: Beliefs of the first alone.
         appeared: Objects perceived in the second alone.
         vanished: Objects perceived in the first alone.
-        changed: Attributes of objects that are perceived in both.
+        changed: Attributes of objects that are perceived in both, and of beliefs held in both.
         actions: What was reported of actions after the first, up to the second.
         withdrawn: What was withdrawn in these cycles, with the cycle.
     """
@@ -162,16 +162,22 @@ def matching(pattern: Atom, instant: Instant) -> tuple[tuple[Belief, Mapping[str
 def when(pattern: Atom, recording: Recording) -> tuple[Times, ...]:
     """Say when anything that matches a pattern was believed or perceived.
 
-    Of percepts each line of the trace is looked at, so that attributes may be asked for as well:
-    `(object plug ^seen no)`.
+    Attributes may be asked for as well: `(object plug ^seen no)`. Of percepts each line of the
+    trace is looked at, of beliefs with attributes each cycle in which there is one.
     """
     if any(percept.name == pattern.predicate for percept in recording.domain.percepts):
-        return tuple(_perceived(pattern, recording))
+        return _in_order(_periods(pattern, _perceived(pattern, recording)))
     chronicle, domain = recording.chronicle(), recording.domain
+    if pattern.attributes:
+        return _in_order(_periods(pattern, _with_attributes(pattern, recording)))
     found = (
         Times(str(belief), periods, what_ended(belief, periods[-1], chronicle, domain))
         for belief, periods in chronicle.matching(pattern)
     )
+    return _in_order(found)
+
+
+def _in_order(found: Iterable[Times]) -> tuple[Times, ...]:
     return tuple(sorted(found, key=lambda each: (each.periods[0].first, each.fact)))
 
 
@@ -180,6 +186,7 @@ def compare(first: Instant, second: Instant, recording: Recording) -> Comparison
     old, new = first.state, second.state
     before = {(each.type, each.name): each for each in old.percepts}
     after = {(each.type, each.name): each for each in new.percepts}
+    kept = {belief: belief for belief in new.beliefs}
     return Comparison(
         first.cycle,
         second.cycle,
@@ -187,23 +194,26 @@ def compare(first: Instant, second: Instant, recording: Recording) -> Comparison
         tuple(belief for belief in old.beliefs if belief not in new),
         tuple(percept for key, percept in after.items() if key not in before),
         tuple(percept for key, percept in before.items() if key not in after),
-        tuple(_changed(before, after)),
+        (
+            *_changed((each.name, each, after.get(key)) for key, each in before.items()),
+            *_changed((str(each), each, kept.get(each)) for each in old.beliefs),
+        ),
         tuple(_reported(first.cycle, second.cycle, recording)),
         tuple(_withdrawn(first.cycle, second.cycle, recording)),
     )
 
 
 def _changed(
-    before: Mapping[tuple[str, str], Percept], after: Mapping[tuple[str, str], Percept]
+    pairs: Iterable[tuple[str, Percept | Belief, Percept | Belief | None]],
 ) -> Iterator[Changed]:
-    for key, old in before.items():
-        new = after.get(key)
+    """Give the attributes that differ, of what there is before and after, by its name."""
+    for name, old, new in pairs:
         if new is None:
             continue
         for attribute in dict.fromkeys((*old.attributes, *new.attributes)):
             was, now = old.attributes.get(attribute), new.attributes.get(attribute)
             if was != now:
-                yield Changed(old.name, attribute, was, now)
+                yield Changed(name, attribute, was, now)
 
 
 def _reported(first: int, second: int, recording: Recording) -> Iterator[tuple[int, str]]:
@@ -222,16 +232,31 @@ def _withdrawn(first: int, second: int, recording: Recording) -> Iterator[tuple[
             yield cycle, each
 
 
-def _perceived(pattern: Atom, recording: Recording) -> Iterator[Times]:
-    """Look through the percepts of all cycles."""
+def _perceived(pattern: Atom, recording: Recording) -> Iterator[tuple[int, list[Belief]]]:
+    """Give what matches of the percepts of each cycle."""
     families = lineages(recording.domain.percepts)
     names = {str(t.value) for t in pattern.args[:1] if isinstance(t, Constant)}
+    for cycle, percepts in recording.percepts():
+        wanted = tuple(each for each in percepts if not names or each.name in names)
+        yield cycle, list(_matches(pattern, percept_facts(wanted, families)))
+
+
+def _with_attributes(pattern: Atom, recording: Recording) -> Iterator[tuple[int, list[Belief]]]:
+    """Give what matches of the beliefs of each cycle, derived anew where there may be some."""
+    bare = replace(pattern, attributes=())
+    believed = [period for _, each in recording.chronicle().matching(bare) for period in each]
+    for cycle in recording.cycles:
+        possible = any(p.first <= cycle and (p.last is None or cycle <= p.last) for p in believed)
+        yield cycle, [f for f, _ in matching(pattern, recording.at(cycle))] if possible else []
+
+
+def _periods(pattern: Atom, found: Iterable[tuple[int, list[Belief]]]) -> Iterator[Times]:
+    """Put the cycles in which the same was so together."""
     periods: dict[str, list[Period]] = {}
     since: dict[str, int] = {}
     last = -1
-    for cycle, percepts in recording.percepts():
-        wanted = tuple(each for each in percepts if not names or each.name in names)
-        now = [_shown(pattern, fact) for fact in _matches(pattern, percept_facts(wanted, families))]
+    for cycle, facts in found:
+        now = [_shown(pattern, fact) for fact in facts]
         for fact in [fact for fact in since if fact not in now]:
             periods[fact].append(Period(since.pop(fact), last))
         for fact in now:
@@ -240,8 +265,7 @@ def _perceived(pattern: Atom, recording: Recording) -> Iterator[Times]:
         last = cycle
     for fact, first in since.items():
         periods[fact].append(Period(first))
-    found = (Times(fact, tuple(held)) for fact, held in periods.items())
-    yield from sorted(found, key=lambda each: (each.periods[0].first, each.fact))
+    yield from (Times(fact, tuple(held)) for fact, held in periods.items())
 
 
 def _matches(pattern: Atom, facts: Iterable[Belief]) -> Iterator[Belief]:
@@ -251,6 +275,6 @@ def _matches(pattern: Atom, facts: Iterable[Belief]) -> Iterator[Belief]:
 
 
 def _shown(pattern: Atom, fact: Belief) -> str:
-    """Write a percept with the attributes that a pattern names."""
+    """Write a fact with the attributes that a pattern names."""
     named = (f" ^{name} {format_value(fact.attributes[name])}" for name, _ in pattern.attributes)
     return f"{str(fact)[:-1]}{''.join(named)})"

@@ -20,6 +20,8 @@ from runtime.errors import ControllerError
 SUPPORTED: Final = "3.9 to 3.15 and 5.6 or newer"
 
 _CONNECT_MS: Final = 2000
+_TRIES: Final = 3
+_TIMED_OUT: Final = "Operation canceled"  # what the client says then
 _UNLOCK_WITHIN_S: Final = 12.0  # a controller refuses in the first 5 s
 _ASK_EVERY_S: Final = 0.5
 _RELEASED_WITHIN_S: Final = 3.0
@@ -136,12 +138,17 @@ def release(address: str) -> str:
 
 
 def _dial(address: str) -> DashboardClient:
-    dashboard = DashboardClient(address)
-    try:
-        dashboard.connect(_CONNECT_MS)
-    except RuntimeError as error:
-        raise ControllerError(_no_answer(address, error)) from None
-    return dashboard
+    """Connect; a controller that is busy, or just coming up, gets more than one chance."""
+    for left in reversed(range(_TRIES)):
+        dashboard = DashboardClient(address)
+        try:
+            dashboard.connect(_CONNECT_MS)
+        except RuntimeError as error:
+            if left and _TIMED_OUT in str(error):
+                continue
+            raise ControllerError(_no_answer(address, error)) from None
+        return dashboard
+    raise AssertionError("the last try returns or raises")
 
 
 def _stop(dashboard: DashboardClient) -> None:

@@ -1,9 +1,12 @@
 from __future__ import annotations
 
+import ast
+
 import pytest
 from recorded_runs import Run, record
 
 from icarus_lite import DomainError, FrameError
+from icarus_lite.symbols import format_value
 from icarus_lite.trace import Recording, compare, matching, pattern_of, when
 
 
@@ -39,6 +42,28 @@ def test_when_an_object_was_perceived_with_an_attribute(recording: Recording) ->
         assert seen == {t.fact[-4:-1].strip() for t in told if in_some(t.periods, cycle)}
 
 
+@pytest.mark.parametrize("asked", ["marked", "mark"])
+def test_when_something_was_believed_with_an_attribute(
+    run: Run, recording: Recording, asked: str
+) -> None:
+    told = when(pattern_of(f"({asked} ?t ^colour ?c)"), recording)
+    assert len({times.fact.split("^")[0] for times in told}) < len(told), "colours change"
+    for cycle, believed in enumerate(run.believed):
+        coloured = {
+            f"{text[:-1]} ^colour {format_value(ast.literal_eval(attributes)[0][1])})"
+            for text, attributes in believed.items()
+            if text.startswith(f"({asked} ")
+        }
+        assert coloured == {t.fact for t in told if in_some(t.periods, cycle)}
+
+
+def test_when_with_the_value_of_an_attribute(recording: Recording) -> None:
+    told = when(pattern_of("(marked ?t ^colour red)"), recording)
+    assert told
+    assert all(times.fact.endswith("^colour red)") for times in told)
+    assert when(pattern_of("(marked ?t ^colour green)"), recording) == ()
+
+
 def test_when_says_what_ended_it(recording: Recording) -> None:
     told = [t for t in when(pattern_of("(attached ?a ?b)"), recording) if t.ended]
     assert any("reported in cycle" in times.ended for times in told)
@@ -67,6 +92,20 @@ def test_comparing_two_cycles(run: Run, recording: Recording) -> None:
     assert [(c.after, c.before) for c in back.changed] == [
         (c.before, c.after) for c in found.changed
     ]
+
+
+def test_a_belief_that_is_still_held_but_otherwise(run: Run, recording: Recording) -> None:
+    """What is asserted anew may come with other attributes."""
+    differ = 0
+    for cycle in range(20, len(run.believed), 3):
+        before, after = run.believed[cycle - 20], run.believed[cycle]
+        expected = {text for text in before if before[text] != after.get(text, before[text])}
+        found = compare(recording.at(cycle - 20), recording.at(cycle), recording)
+        assert {c.name for c in found.changed if c.name.startswith("(")} == expected
+        differ += len(expected)
+        for text in expected:
+            assert f"\n  {text}: ^colour " in str(found)
+    assert differ
 
 
 def test_a_cycle_beside_itself(recording: Recording) -> None:
