@@ -11,32 +11,23 @@ from __future__ import annotations
 
 import argparse
 import math
-import random
 import statistics
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
-import numpy as np
+from aapa_bounds import BOUNDS, bounds
+from aapa_trouble import TROUBLE, troubled
 
-from aapa.lacater.classes import SNITCH_KEY
 from aapa.lacater.generator import DetectorNoise, Recipe, generate_dataset
 from aapa.lacater.layout import PerceptionKind
-from aapa.lacater.metric import (
-    TASKS,
-    VideoScore,
-    centre_distances,
-    first_sighting,
-    score_video,
-    table_row,
-)
-from aapa.lacater.models import Frame, Model, model_named
+from aapa.lacater.metric import TASKS
+from aapa.lacater.models import Model, model_named
 from aapa.lacater.models.plus import BeyondAapa, Ideas
 from aapa.lacater.reading import Dataset
 from icarus_lite import load_domain
-from runtime.cater.attachments import AttachmentEngine, TimedAction, timed_actions
+from runtime.cater.attachments import AttachmentEngine, timed_actions
 from runtime.cater.evaluate import How, cater_domain, evaluate
 from runtime.cater.evaluation import Job, cast_of, frames_of, run_model
 from runtime.cater.report import Row
@@ -92,37 +83,7 @@ TARGETS = {
     PerceptionKind.PP: (98.0, 93.0, 0.8),
     PerceptionKind.OD: (89.0, 82.0, None),
 }
-TROUBLED = ("aapa-10000", "aapa-plus", "aapa-plus-without-rivals")
-WORST = 5
 WITHIN = 1.0  # points from the paper
-SNITCH_INSTANCE = "Spl_0"
-LATE_FRAMES = 10
-LOST_SHARE = 1 / 3
-
-
-@dataclass(frozen=True, slots=True)
-class Trouble:
-    """A way in which the reports of actions may be bad.
-
-    Args:
-        title: In words.
-        late: By how many frames all come too late.
-        lost: The share of the actions that are never reported.
-        nameless: They are reported without a word of what they are done with.
-    """
-
-    title: str
-    late: int = 0
-    lost: float = 0.0
-    nameless: bool = False
-
-
-TROUBLES = (
-    Trouble("all in time"),
-    Trouble(f"all {LATE_FRAMES} frames late, no planned end", late=LATE_FRAMES),
-    Trouble("a third of the actions never reported", lost=LOST_SHARE),
-    Trouble("all without their participants", nameless=True),
-)
 
 
 def prepared(root: Path, seed: int, videos: int, jobs: int) -> Path:
@@ -214,121 +175,6 @@ def seeds(roots: Mapping[int, Path], jobs: int) -> list[str]:
     most, where = max(apart)
     said = "met" if most <= WITHIN else "MISSED"
     lines += ["", f"Farthest from the paper: {where}, by {most:.2f} points (wanted <= 1: {said})."]
-    return [*lines, ""]
-
-
-def troubled(root: Path, kind: PerceptionKind, videos: int) -> list[str]:
-    """Give the table of bad reports: aapa-10000 beside aapa-plus with and without its rivals."""
-    dataset = Dataset(root)
-    engine = AttachmentEngine(load_domain(cater_domain()))
-    models = [model_named(name) for name in TROUBLED]
-    lines = [
-        "| Reports | Model | " + " | ".join(TASKS) + " |",
-        "| --- " * (len(TASKS) + 2) + "|",
-    ]
-    for trouble in TROUBLES:
-        scores: dict[str, list[VideoScore]] = {model.name: [] for model in models}
-        for name in dataset.videos[:videos]:
-            video = dataset.video(name)
-            perception = dataset.perception(video, kind)
-            start = first_sighting(perception)
-            snitch = video.labels.snitch
-            if start is None or snitch is None or video.scene is None:
-                continue
-            actions = spoilt(timed_actions(video.scene), trouble, name)
-            reports = engine.reports(actions, perception.frames)
-            frames = [as_told(f, trouble) for f in frames_of(perception, reports)]
-            for model in models:
-                boxes = run_model(model, frames, cast_of(video.scene))
-                score = score_video(boxes, snitch.astype(float), video.masks, start)
-                scores[model.name].append(score)
-        for model in models:
-            miou, _ = table_row(scores[model.name])
-            cells = " | ".join(f"{miou[task].mean:.2f}" for task in TASKS)
-            lines.append(f"| {trouble.title} | {model.name} | {cells} |")
-    return [*lines, ""]
-
-
-def spoilt(actions: Sequence[TimedAction], trouble: Trouble, name: str) -> list[TimedAction]:
-    """Give the actions as they are reported; what one stack does is lost or reported as one."""
-    chance = random.Random(f"lost {name}")  # noqa: S311 - an experiment, no secret
-    fate: dict[tuple[str, int, int], bool] = {}
-    kept = []
-    for action in actions:
-        key = (action.name, action.start, action.end)
-        if not fate.setdefault(key, chance.random() < trouble.lost):
-            late = trouble.late
-            kept.append(replace(action, start=action.start + late, end=action.end + late))
-    return kept
-
-
-def as_told(frame: Frame, trouble: Trouble) -> Frame:
-    """Give a frame with its reports as they come.
-
-    Those that come late would name a wrong planned end, and have none. Where it is not said what
-    is done with what, the engine cannot know of any attachment either.
-    """
-    if trouble.nameless:
-        actions = tuple(replace(a, args=(), planned_end=None) for a in frame.actions)
-        return replace(frame, actions=actions, attachments=())
-    if not trouble.late or not frame.actions:
-        return frame
-    return replace(frame, actions=tuple(replace(a, planned_end=None) for a in frame.actions))
-
-
-def bounds(root: Path) -> list[str]:
-    """Give what the distance that is left on carried frames is made of, perfect perception."""
-    dataset = Dataset(root)
-    engine = AttachmentEngine(load_domain(cater_domain()))
-    whole, seen, floor = [], [], []
-    hidden = frames = 0
-    for name in dataset.videos:
-        video = dataset.video(name)
-        perception = dataset.perception(video, PerceptionKind.PP)
-        start, snitch = first_sighting(perception), video.labels.snitch
-        carried = video.masks.carried.copy()
-        carried[:start] = False
-        if start is None or snitch is None or video.scene is None or not carried.any():
-            continue
-        reports = engine.reports(timed_actions(video.scene), perception.frames)
-        cast = cast_of(video.scene)
-        tracker = BeyondAapa(Ideas(), cast)
-        boxes, in_view = [], []
-        for frame in frames_of(perception, reports):
-            boxes.append(tracker.observe(frame) or (math.nan,) * 4)
-            container = SNITCH_INSTANCE
-            while container in tracker.parents:
-                container = tracker.parents[container]
-            in_view.append(bool((frame.classes == cast[container]).any()))
-        off = centre_distances(np.array(boxes, dtype=np.float64), snitch.astype(np.float64))
-        view = np.array(in_view) & carried
-        frames, hidden = frames + int(carried.sum()), hidden + int((carried & ~view).sum())
-        whole.append(float(off[carried].mean()))
-        if view.any():
-            seen.append(float(off[view].mean()))
-        if video.exact_boxes is not None:
-            true = video.exact_boxes[video.labels.keys.index(SNITCH_KEY)]
-            floor.append(float(centre_distances(true, snitch.astype(np.float64))[carried].mean()))
-    worst = sorted(whole, reverse=True)[:WORST]
-    half, most = np.percentile(whole, (50, 90))
-    unseen = 100 * hidden / frames
-    spread = (
-        f"- The distance is {np.mean(whole):.2f} px in the mean of {len(whole)} videos; in half of "
-        f"them it is below {half:.2f}, in nine of ten below {most:.2f}. The {WORST} worst have "
-        f"{' / '.join(f'{value:.1f}' for value in worst)}, and make {sum(worst) / len(whole):.2f} "
-        "px of the mean."
-    )
-    cause = (
-        f"- In {unseen:.1f} % of the frames nothing of the container's class is detected, and "
-        "nothing tells where it slides to. Over the frames in which it is detected the mean is "
-        f"{np.mean(seen):.2f} px."
-    )
-    lines = [spread, cause]
-    if floor:
-        lines.append(
-            "- The middle of the true box, before it is rounded, is "
-            f"{np.mean(floor):.2f} px off that of the label: so much is rounding alone."
-        )
     return [*lines, ""]
 
 
@@ -434,31 +280,6 @@ other seeds. In most videos the snitch is never, or for a few frames only, occlu
 in which it is lost behind something weighs as much as any other: the column *occluded* moves by
 more than a point from a thousand videos to the next, here and there (the paper's own standard error
 is 0.64). Whether it is the same model is told by all of them together."""
-
-TROUBLE = """A report that comes late finds the cone already on its way; one that never comes leaves
-the snitch without a container. `aapa-plus` then believes what it sees: a cone that stands where
-something vanished contains it, and what is seen to move moves. Where it is said that something is
-done, but not with what, it weighs all cones that may contain the snitch from frame to frame;
-`without-rivals` believes in the nearest at once."""
-
-BOUNDS = """- With perfect perception a class of which one object is contained is not reported
-  at all, as in the published code: a second cone of that class slides unseen with the snitch in
-  it. With the detector, class 0 (a large blue metal cone) is never reported; the same follows.
-- Contained and carried with the detector, AAPA-10k: contained is 3 points below the paper, carried
-  4 above. The detector's noise moves both the same way. On 170 tuning videos (contained / carried,
-  standard errors 1.2 and 2.8):
-
-| noise | contained | carried |
-| --- | --- | --- |
-| as it is | 78.69 | 70.26 |
-| no false snitches | 80.18 | 74.07 |
-| half found at 15 % seen, not 30 | 77.75 | 70.04 |
-| half found at 50 % seen | 77.46 | 68.28 |
-| misses 3 % | 77.83 | 69.38 |
-| no classes mistaken | 78.37 | 70.13 |
-
-  No one of them brings contained up and carried down, and nothing that is published asks for
-  another value; they were left as they are."""
 
 if __name__ == "__main__":
     raise SystemExit(main())
