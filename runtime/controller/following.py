@@ -2,8 +2,8 @@
 
 A simulated cell moves its parts after the arm and tells the controller what the tool is near. On a
 busy machine it comes late, while the arm of a fast clock goes on, at last through what it was never
-told of. A cell that says each time that it has looked is waited for: an arm that moves has less
-and less time once it is some way ahead.
+told of. A cell that says each time that it has looked is waited for: an arm that moves, or presses,
+has little time once it is some way ahead.
 """
 
 from __future__ import annotations
@@ -57,5 +57,9 @@ class Following:
             self._gone_at_s = None
             return clock
         behind = self._box.time_s - self._seen_s > LEAD_S
-        moves = float(abs(self._box.arm.state.qd).max()) > _MOVES_RAD_S
-        return min(clock, _WAITING) if behind and moves else clock
+        return min(clock, _WAITING) if behind and self._is_busy() else clock
+
+    def _is_busy(self) -> bool:
+        """Tell whether the arm moves, or presses on something."""
+        arm = self._box.arm
+        return arm.force_mode is not None or float(abs(arm.state.qd).max()) > _MOVES_RAD_S

@@ -12,6 +12,7 @@ back, it is jammed.
 from __future__ import annotations
 
 import math
+from collections import deque
 from enum import Enum, auto
 from typing import Final
 
@@ -30,7 +31,8 @@ _STRAY_M: Final = 0.006  # beyond the search
 _EXTRA: Final = 1.1  # of the force that seats it, and
 _EXTRA_N: Final = 1.0  # so that it is reached for certain
 _REACHED: Final = 0.95  # of it counts
-_HOME_FOR_S: Final = 0.2
+_HOME_FOR_S: Final = 0.4
+_READINGS: Final = 4
 _HOME_WITHIN_S: Final = 3.0
 _LET_UP_WITHIN_S: Final = 2.0
 _HARDER_FOR_S: Final = 0.8  # before a part that stands too high is drawn about
@@ -71,7 +73,7 @@ class Pressing:
         self._rim_z = -math.inf  # where it stood last
         self._angle = 0.0
         self._went_m = 0.0
-        self._home_s = 0.0
+        self._presses: deque[tuple[float, float]] = deque()  # each lasted so long, s, and N
         self._pressed_n = 0.0  # what it was pressed home with
         self._goes_on: Final = {
             _Phase.DOWN: self._down,
@@ -129,18 +131,33 @@ class Pressing:
     def _press_home(self, reading: Reading) -> Push | Finish:
         if reading.pose[2] > self._home_z + 2 * self._step.tolerance_m:
             return self._to(_Phase.HARDER)
-        pressed = reading.press_n >= _REACHED * self._step.press_n and self._is_low(reading)
-        self._home_s = self._home_s + self._watch.step_s if pressed else 0.0
-        if self._home_s >= _HOME_FOR_S:
-            self._pressed_n = reading.press_n
+        self._pressed_n = self._mean_press(reading)
+        if self._pressed_n >= _REACHED * self._step.press_n:
             return self._to(_Phase.LETTING_UP)
         if self._phase_s > _HOME_WITHIN_S:
+            mean_n = sum(force for _, force in self._presses) / max(len(self._presses), 1)
             return self._failed(
-                f"could not be pressed home: {reading.press_n:.0f} of {self._step.press_n:g} N "
+                f"could not be pressed home: {mean_n:.0f} of {self._step.press_n:g} N "
                 f"reached, {self._above(reading)}",
                 reading,
             )
         return self._push((0.0, 0.0), self._press_n)
+
+    def _mean_press(self, reading: Reading) -> float:
+        """Give the mean force of the last while, N; 0 until it has been low for as long.
+
+        A single reading says little: the sensor is noisy, and an edge makes the tool chatter.
+        """
+        if not self._is_low(reading):
+            self._presses.clear()
+            return 0.0
+        self._presses.append((self._watch.step_s, reading.press_n))
+        lasted_s = sum(step_s for step_s, _ in self._presses)
+        while len(self._presses) > _READINGS and lasted_s - self._presses[0][0] >= _HOME_FOR_S:
+            lasted_s -= self._presses.popleft()[0]
+        if lasted_s < _HOME_FOR_S or len(self._presses) < _READINGS:
+            return 0.0
+        return sum(force for _, force in self._presses) / len(self._presses)
 
     def _let_up(self, reading: Reading) -> Push | Finish:
         """Press no harder than on the way down, and look whether it has stayed where it was."""
@@ -172,7 +189,8 @@ class Pressing:
         return f"found no opening within {self._step.search_m * 1000:g} mm: it stands {standing}"
 
     def _to(self, phase: _Phase) -> Push:
-        self._phase, self._phase_s, self._home_s = phase, 0.0, 0.0
+        self._phase, self._phase_s = phase, 0.0
+        self._presses.clear()
         self._watch.forget_heights()
         return self._push((0.0, 0.0), self._force.descent_n)
 
