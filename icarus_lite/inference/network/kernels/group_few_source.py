@@ -15,6 +15,10 @@ from icarus_lite.language.syntax import Expression, Variable
 _OTHER = {"left": "right", "right": "left"}
 
 
+def _inside(place: int, name: str) -> str:
+    return f"low_{place} <= {name}[other] <= high_{place}"
+
+
 def _partners(number: int, word: str) -> str:
     return f"partners_{number}_{word}"
 
@@ -103,67 +107,61 @@ class _Few:
         self.lines += [f"        own_{name} = {name}[slot]" for name in names]
 
     def _among(self) -> None:
-        """Write the look-up of what is near the mover."""
+        """Write which objects may be near the mover: all of them, or those that keys show."""
         add = self.lines.append
-        names = [self._names.column(self._type, bound.attribute) for bound in self._box]
+        names = self._places()
         for place, name in enumerate(names):
             own, reach = f"own_{name}", f"reach_{place}"
             add(f"        low_{place}, high_{place} = {own} - {reach}, {own} + {reach}")
-        further = ""
-        if len(names) == 2:
-            further = f"low_1 <= {names[1]}[other] <= high_1"
         add("        if keys is None:")
-        scan = "low_0 <= place <= high_0" + (f" and {further}" if further else "")
-        add(f"            among = [other for other, place in enumerate({names[0]}) if {scan}]")
+        add(f"            among = range(len({names[0]}))")
         add("        else:")
         add("            begin = bisect_left(keys.ranked, low_0)")
         add("            end = bisect_right(keys.ranked, high_0)")
-        which = f"other for other in keys.slots[begin:end] if {further}" if further else ""
-        add(f"            among = sorted({f'[{which}]' if which else 'keys.slots[begin:end]'})")
-        if self._all_apart():
-            add("        among.remove(slot)")
+        which = "keys.slots[begin:end]"
+        if len(names) == 2:
+            which = f"[other for other in {which} if {_inside(1, names[1])}]"
+        add(f"            among = sorted({which})")
+
+    def _places(self) -> list[str]:
+        """Name the lists of where objects are."""
+        return [self._names.column(self._type, bound.attribute) for bound in self._box]
 
     def _all_apart(self) -> bool:
         return all(self._members[number].kernel.plan.distinct for number in self._boxed)
-
-    def _condition(
-        self, number: int, word: str, names: dict[Expression, str], *, apart: bool
-    ) -> str:
-        """Write that another object is a partner of the mover, which is on one side."""
-        member = self._members[number]
-        names = names | {term: f"own_{name}" for term, name in self._names.terms(number, word)}
-        condition = PythonWriter(names, member.kernel.limit).condition(member.kernel.paired)
-        if apart and member.kernel.plan.distinct and member.left == member.right:
-            condition = f"other != slot and {condition}"
-        return condition
 
     def _near(self, rows: Sequence[tuple[int, str]]) -> None:
         """Write one loop over what is near the mover, in which all bounded rules are asked."""
         add, apart = self.lines.append, not self._all_apart()
         self.lines += [f"        {_partners(*row)} = []" for row in rows]
         add("        for other in among:")
+        inside = " and ".join(_inside(n, name) for n, name in enumerate(self._places()))
+        add(f"            if not ({inside}){'' if apart else ' or other == slot'}:")
+        add("                continue")
         for number, word in rows:
-            others = self._names.terms(number, _OTHER[word])
-            names: dict[Expression, str] = {term: f"{name}[other]" for term, name in others}
-            add(f"            # {self._members[number].name}, the mover on the {word}")
-            add(f"            if {self._condition(number, word, names, apart=apart)}:")
-            add(f"                {_partners(number, word)}.append(other)")
+            self._ask(number, word, apart=apart)
 
     def _all_partners(self, number: int, word: str) -> None:
         """Write the search for the partners of a mover among all objects of the other side."""
-        others = self._names.terms(number, _OTHER[word])
-        names: dict[Expression, str] = {
-            term: f"of_{place}" for place, (term, _) in enumerate(others)
-        }
-        words = ", ".join(names.values())
-        lists = ", ".join(name for _, name in others)
-        source = f"for other, ({words}) in enumerate(zip({lists}))"
-        if len(others) == 1:
-            source = f"for other, {words} in enumerate({lists})"
-        condition = self._condition(number, word, names, apart=True)
+        (_, first), *_ = self._names.terms(number, _OTHER[word])
         self.lines += [
-            f"        # {self._members[number].name}, the mover on the {word}",
-            f"        {_partners(number, word)} = [other {source} if {condition}]",
+            f"        {_partners(number, word)} = []",
+            f"        for other in range(len({first})):",
+        ]
+        self._ask(number, word, apart=True)
+
+    def _ask(self, number: int, word: str, *, apart: bool) -> None:
+        """Write the question whether another object is a partner of the mover."""
+        member, others = self._members[number], self._names.terms(number, _OTHER[word])
+        names: dict[Expression, str] = {term: f"{name}[other]" for term, name in others}
+        names |= {term: f"own_{name}" for term, name in self._names.terms(number, word)}
+        condition = PythonWriter(names, member.kernel.limit).condition(member.kernel.paired)
+        if apart and member.kernel.plan.distinct and member.left == member.right:
+            condition = f"other != slot and {condition}"
+        self.lines += [
+            f"            # {member.name}, the mover on the {word}",
+            f"            if {condition}:",
+            f"                {_partners(number, word)}.append(other)",
         ]
 
     def _compare(self, number: int, word: str) -> None:
