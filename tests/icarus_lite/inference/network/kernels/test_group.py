@@ -246,3 +246,33 @@ def test_a_limit_that_grows_widens_the_search(compiled: CompiledDomain) -> None:
     assert network.holds(Belief("on", ("top", "below")))
     network.move("box", ["top"], {"x": [126], "y": [0], "z": [10]})
     assert not network.holds(Belief("on", ("top", "below")))
+
+
+def test_few_of_many_are_followed_by_their_ranked_places(
+    compiled: CompiledDomain, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    went = watch(monkeypatch, "few")
+    world = World(120, 5, whole_numbers=True, odd=False)
+    network = fresh(compiled, world)
+    for cycle in range(12):
+        names = world.rng.sample(list(world.boxes), 3)
+        places = {each: [world.number(world.width) for _ in names] for each in "xyz"}
+        for each, values in places.items():
+            for name, value in zip(names, values, strict=True):
+                world.boxes[name][each] = value
+        network.move("box", names, places)
+        assert held(network) == held(fresh(compiled, world)), cycle
+    assert went["together"] == 12
+
+
+def test_a_bound_beyond_all_numbers_is_none() -> None:
+    domain, problems = parse_domain(
+        "(percepts (box ^x)) (concepts ((faint ?a ?b)"
+        " :elements ((box ?a ^x ?xa) (box ?b ^x ?xb))"
+        " :tests ((/= ?a ?b) (< (* 1e-320 (abs (- ?xa ?xb))) 1))))"
+    )
+    assert not problems
+    network = compile_domain(domain).network()
+    network.update(Delta(tuple(Percept("box", name, {"x": 0}) for name in "abc")))
+    network.move("box", ["a"], {"x": [2**19]})
+    assert len(set(network.facts("faint"))) == 6
