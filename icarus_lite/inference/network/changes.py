@@ -35,7 +35,7 @@ class Changes:
 
     Args:
         cycle: The number of the cycle, counted by the network from 0.
-        read: Gives the beliefs added, removed, and changed in their attributes alone.
+        read: Gives the beliefs that a cycle added, removed, and changed in their attributes alone.
     """
 
     __slots__ = ("_read", "_sorted", "cycle")
@@ -43,7 +43,7 @@ class Changes:
     def __init__(
         self,
         cycle: int,
-        read: Callable[[], tuple[Sequence[Belief], Sequence[Belief], Sequence[Belief]]],
+        read: Callable[[int], tuple[Sequence[Belief], Sequence[Belief], Sequence[Belief]]],
     ) -> None:
         self.cycle = cycle
         self._read = read
@@ -66,7 +66,7 @@ class Changes:
 
     def _in_order(self) -> tuple[tuple[Belief, ...], ...]:
         if self._sorted is None:
-            self._sorted = tuple(tuple(sorted(part, key=str)) for part in self._read())
+            self._sorted = tuple(tuple(sorted(part, key=str)) for part in self._read(self.cycle))
         return self._sorted
 
     def __repr__(self) -> str:

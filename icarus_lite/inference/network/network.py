@@ -154,8 +154,7 @@ class Network(Asking):
             events += events_of_given(base, self._running.heads)
         self._history.add(events, base.settle())
         self.cycle += 1
-        cycle = self.cycle
-        return Changes(cycle, lambda: self._changes(cycle))
+        return Changes(self.cycle, self._changes)
 
     def _reviewed(self, review: Review, events: list[Event]) -> list[Event]:
         """Let somebody look at what has been inferred, and take back what does not stand up."""

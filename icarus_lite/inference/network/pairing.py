@@ -57,7 +57,7 @@ class Pairing:
         groups: The rules that may be followed together, and the objects that they see.
     """
 
-    __slots__ = ("_groups", "_kernels", "_paired")
+    __slots__ = ("_followed", "_groups", "_kernels", "_paired")
 
     def __init__(
         self,
@@ -68,6 +68,7 @@ class Pairing:
     ) -> None:
         self._kernels: list[_Kernel] = []
         self._groups: dict[int, _Group] = {}
+        self._followed: _Group | None = None  # the last one: only it may be armed
         self._paired = frozenset(id(o) for s in pairs.values() for o in (s.left, s.right))
         numbers = {head.relation.name: head.number for head in design.heads}
         clauses = {
@@ -126,8 +127,9 @@ class Pairing:
         moving = self._moving(changed, known) if known else None
         if moving is not None and moving in self._groups:
             together = self._groups[moving]
-            if len(self._groups) > 1:
+            if together is not self._followed:
                 self._disarm_others(together)
+                self._followed = together
             found = together.group.follow(changed[moving], attributes[moving])
             if found is not None:
                 _follow_together(together, found, moving, changed[moving], record, check)

@@ -268,16 +268,15 @@ class OrderRelation(PairRelation):
             g.rank()
         cut = bisect_right if strict else bisect_left
         up, down = self._passed(self._left, changed_left, f, g, cut)
+        cut = bisect_left if strict else bisect_right
+        right_up, right_down = self._passed(self._right, changed_right, g, f, cut)
+        if not (up or down or right_up or right_down):  # as in most cycles
+            return [], []
         removed: list[Pair] = [(i, j) for i, others in up for j in others]
         added: list[Pair] = [(i, j) for i, others in down for j in others]
-        before, gone = len(added), len(removed)
-        cut = bisect_left if strict else bisect_right
-        up, down = self._passed(self._right, changed_right, g, f, cut)
-        if not (up or down or added or removed):  # as in most cycles
-            return added, removed
-        added += [(i, j) for j, others in up for i in others]
-        removed += [(i, j) for j, others in down for i in others]
-        if (before and len(removed) > gone) or (gone and len(added) > before):
+        added += [(i, j) for j, others in right_up for i in others]
+        removed += [(i, j) for j, others in right_down for i in others]
+        if (up and right_up) or (down and right_down):
             added, removed = net(added, removed)
         return self._apart(added), self._apart(removed)
 
