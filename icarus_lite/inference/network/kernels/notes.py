@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TypeAlias
 
 from icarus_lite.inference.network.kernels.group_members import Member
-from icarus_lite.inference.network.kernels.relation import Change
+from icarus_lite.inference.network.kernels.relation import Change, Pair
 
 Found: TypeAlias = dict[int, Change]
 """What members of a group gain and lose, by their number."""
@@ -41,7 +41,7 @@ class Notes:
         """Note the partners of a mover by a rule that goes both ways."""
         rows = self._left[number]
         rows[slot] = now
-        for change, others in zip(_change_in(found, number), _less(now, before), strict=True):
+        for change, others in _turns(found, number, now, before):
             for other in others:
                 change.append((slot, other))
                 if other not in moved:
@@ -60,7 +60,7 @@ class Notes:
         """Note the partners of a mover that stands on the left."""
         self._left[number][slot] = now
         partners = self._right[number]
-        for change, others in zip(_change_in(found, number), _less(now, before), strict=True):
+        for change, others in _turns(found, number, now, before):
             for other in others:
                 change.append((slot, other))
                 partners[other] = None
@@ -79,23 +79,22 @@ class Notes:
         member = self._members[number]
         known = moved if member.left == member.right else ()
         partners = self._left[number]
-        for change, others in zip(_change_in(found, number), _less(now, before), strict=True):
+        for change, others in _turns(found, number, now, before):
             for other in others:
                 if other not in known:
                     change.append((other, slot))
                     partners[other] = None
 
 
-def _change_in(found: Found, number: int) -> Change:
+def _turns(
+    found: Found, number: int, now: list[int], before: list[int]
+) -> tuple[tuple[list[Pair], list[int]], tuple[list[Pair], list[int]]]:
+    """Give what a rule gains so far, with the partners that are new; likewise what it loses."""
     change = found.get(number)
     if change is None:
         change = found[number] = ([], [])
-    return change
-
-
-def _less(now: list[int], before: list[int]) -> tuple[list[int], list[int]]:
-    """Give what is in one list only: those of now, and those of before."""
+    gained, lost = change
     return (
-        [each for each in now if each not in before],
-        [each for each in before if each not in now],
+        (gained, [each for each in now if each not in before]),
+        (lost, [each for each in before if each not in now]),
     )
