@@ -17,7 +17,8 @@ _LEAST_PLAY: Final = 0.004  # m that the open fingers leave around a part
 _OFF_M: Final = 0.0015  # lifted so far, a part is off its seat
 _PUT_DOWN_N: Final = 4.0  # with which a part must stand on the table before it is let go
 _STANDS_M: Final = 0.005  # as far above where it should stand: a part may hang lower in the hand
-_SEEN_STANDING_M: Final = 0.004  # by which the height of a part on the table may be seen wrongly
+_SEEN_STANDING_M: Final = 0.004  # above what stands on the table, it may still be that
+_SEEN_BELOW_M: Final = 0.010  # below that nothing can be: seen lower still, it is some mistake
 
 
 def grasp(planner: Planner, hand: str, obj: str) -> None:
@@ -45,11 +46,11 @@ def _centre_height(planner: Planner, obj: str) -> float:
     """Give how high the centre of a part is, m: of one that stands on the table, by the table.
 
     Where it is gripped decides how deep it will be pressed home, to fractions of a millimetre; a
-    camera is not as good as that.
+    camera is not as good as that. What is seen a little lower than on the table stands there.
     """
     part, z = planner.places.part(obj), planner.places.position(obj)[2]
     standing = planner.config.workspace.table_z_m + part.size[2] / 2
-    return standing if abs(z - standing) <= _SEEN_STANDING_M else z
+    return standing if -_SEEN_BELOW_M <= z - standing <= _SEEN_STANDING_M else z
 
 
 def take_out(planner: Planner, hand: str, obj: str, _into: str) -> None:

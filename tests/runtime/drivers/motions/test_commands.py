@@ -89,7 +89,9 @@ def test_a_grasp_goes_over_the_part_and_down_and_closes(config, parts, scene, ar
     assert close.centre_of_gravity_m == pytest.approx((0.0, 0.0, 0.06))
 
 
-@pytest.mark.parametrize(("wrong_m", "as_seen"), [(0.0035, False), (-0.0035, False), (0.02, True)])
+@pytest.mark.parametrize(
+    ("wrong_m", "as_seen"), [(0.0035, False), (-0.0035, False), (-0.006, False), (0.02, True)]
+)
 def test_a_part_on_the_table_is_gripped_where_it_stands_however_it_is_seen(
     config, parts, scene, arm_at, wrong_m, as_seen
 ):
