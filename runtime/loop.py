@@ -97,6 +97,8 @@ class Loop:
         self._interruption = Interruption()
         self._asked_since = -1
         self._cycles = 0
+        self._begun_s: float | None = None
+        self._lasted_s = 0.0
         self._ended: LoopResult | None = None
 
     def run(self) -> LoopResult:
@@ -120,6 +122,9 @@ class Loop:
             return self._ended
         if self._cycles >= self._limits.cycles:
             return self._end(_End(f"the goal was not reached in {self._cycles} cycles"))
+        if self._lasted_s > self._limits.run_s:
+            minutes = f"{self._limits.run_s / 60:g} minutes"
+            return self._end(_End(f"the goal was not reached in {minutes} of the arm's clock"))
         self._cycles += 1
         try:
             self._interruption.check()
@@ -204,6 +209,8 @@ class Loop:
         """See, anchor, infer, decide; write it down."""
         begun_s = time.perf_counter()
         arm = self._driver.state()
+        self._begun_s = arm.timestamp_s if self._begun_s is None else self._begun_s
+        self._lasted_s = arm.timestamp_s - self._begun_s
         self._sight.update(arm)
         reports = self._people.colleague.reports(self._sight.by_name())
         outcomes = self._outcomes = (*outcomes, *reports)

@@ -31,7 +31,8 @@ class LoopLimits:
         company_s: How long a look may begin anew again and again because the hand of a person is
             in sight, who knows what it is about to do, or because something speaks against the
             goals. On the arm's clock, s.
-        cycles: The most cycles of one run.
+        run_s: The longest a run may take, on the arm's clock, s.
+        cycles: The most cycles of one run, whatever that clock says.
     """
 
     patience: int = 15
@@ -39,7 +40,8 @@ class LoopLimits:
     confirm: int = 16
     confirm_s: float = 1.0
     company_s: float = 30.0
-    cycles: int = 3000
+    run_s: float = 900.0
+    cycles: int = 100_000
 
 
 class _Arm(Enum):

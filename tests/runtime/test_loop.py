@@ -127,6 +127,13 @@ def test_the_limit_of_cycles(gearbox: Path) -> None:
     assert (result.cycles, result.reason) == (20, "the goal was not reached in 20 cycles")
 
 
+def test_the_limit_of_time(gearbox: Path) -> None:
+    body = Body(polls=10_000)
+    result = loop(body, gearbox, limits=LoopLimits(run_s=30.0)).run()
+    assert result.reason == "the goal was not reached in 0.5 minutes of the arm's clock"
+    assert 30.0 < body.state().timestamp_s < 33.0
+
+
 def test_the_trace_replays_to_the_same_decisions(gearbox: Path, tmp_path: Path) -> None:
     domain = load_domain(gearbox)
     path = tmp_path / "run.jsonl"
