@@ -38,8 +38,12 @@ _TCP_WITHIN_S: Final = 2.0
 _PROGRAM_WITHIN_S: Final = 2.0
 _FORCE_FRAME_AS_GIVEN: Final = 2  # of force mode's types, the one that does not turn the frame
 
+_LET_GO_WITHIN_S: Final = 3.0
+_ASK_AGAIN_S: Final = 0.2
+
+_OCCUPIED: Final = "already in use"
 _REFUSALS: Final = {
-    "already in use": (
+    _OCCUPIED: (
         "another program or a fieldbus (EtherNet/IP, PROFINET, MODBUS) holds the controller's RTDE "
         "registers; end that program, or disable the fieldbus on the teach pendant"
     ),
@@ -270,9 +274,18 @@ def pose_error(pose: Pose, target: Pose) -> tuple[float, float]:
 
 
 def _construct(interface: Any, address: str, what: str) -> Any:
-    try:
-        return interface(address)
-    except RuntimeError as error:
-        said = str(error)
-        to_do = next((words for sign, words in _REFUSALS.items() if sign in said.lower()), said)
-        raise ControllerError(f"{address}: cannot open the {what}: {to_do}") from None
+    """Open one of the client's connections.
+
+    A program that has just been killed holds the registers for another moment: its successor waits.
+    """
+    deadline = time.monotonic() + _LET_GO_WITHIN_S
+    while True:
+        try:
+            return interface(address)
+        except RuntimeError as error:
+            said = str(error)
+            if _OCCUPIED in said.lower() and time.monotonic() < deadline:
+                time.sleep(_ASK_AGAIN_S)
+                continue
+            to_do = next((words for sign, words in _REFUSALS.items() if sign in said.lower()), said)
+            raise ControllerError(f"{address}: cannot open the {what}: {to_do}") from None

@@ -6,9 +6,11 @@ import dataclasses
 import os
 import re
 import signal
+import threading
 import time
 
 import pytest
+from rtde_io import RTDEIOInterface
 
 from icarus_lite import Action, Status
 from runtime.config import load_robot
@@ -92,6 +94,18 @@ def plate(x, y, height):
         "heights": [[height, height], [height, height]],
         "stiffness_n_m": 20_000.0,
     }
+
+
+def test_registers_that_a_dying_program_still_holds_are_waited_for(controller, config, parts):
+    before = RTDEIOInterface(controller.address)
+    lets_go = threading.Timer(1.0, before.disconnect)
+    lets_go.start()
+    driver = connect(controller, config, parts)
+    lets_go.join()
+    try:
+        assert driver.state().joints == pytest.approx(config.look_joints, abs=1e-3)
+    finally:
+        driver.close()
 
 
 def test_a_hub_cover_is_picked_up_and_inserted(controller, config, parts, scene):
