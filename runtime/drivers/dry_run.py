@@ -198,4 +198,5 @@ def _felt(step: ArmStep, turn_rad: float) -> Felt | None:
     if not isinstance(step, Turn):
         return None
     stalled = step.clockwise and abs(turn_rad) >= step.angle_rad - _WHOLE
-    return Felt(turned_rad=turn_rad, stalled=stalled)
+    sunk_m = step.pitch_m * turn_rad / (2 * math.pi)
+    return Felt(turned_rad=turn_rad, stalled=stalled, sunk_m=sunk_m)

@@ -7,7 +7,7 @@ import sys
 
 import lacater_table
 import pytest
-from lacater_page import Rows, ahead, difference, table
+from lacater_page import Rows, ahead, difference, table, worst_share
 from lacater_paper import PAPER
 
 from aapa.lacater.layout import PerceptionKind
@@ -85,7 +85,16 @@ def test_ahead_is_what_beats_every_published_row(tmp_path):
     rows = Rows(tmp_path / "rows.jsonl")
     rows.add(row(PP, "aapa-plus", [99.7, 90.6, 94.2, 87.9, 96.6], [0.1, 2.1, 0.4, 1.5, 0.4]))
     [said] = ahead(rows, "aapa-plus")
-    assert said == "PP: `aapa-plus` is not ahead in ml2 carried (1.50 against 1.42)."
+    assert said == (
+        "PP: `aapa-plus` is not ahead in ml2 carried (1.50 ± 0.10 against 1.42 ± 0.04)."
+    )
+
+
+def test_how_much_of_a_distance_the_worst_videos_make():
+    distances = [0.0] * 198 + [30.0, 10.0, None]
+    scores = {str(n): [[90.0], [score]] for n, score in enumerate(distances)}
+    assert worst_share({"scores": scores}, 1, 0) == "; 2 of 200 videos make 100% of it"
+    assert worst_share({"scores": scores}, 0, 0) == ""
 
 
 def test_the_paper_s_rows_are_whole():

@@ -112,7 +112,7 @@ def test_a_part_is_pressed_home(driver, controller, held, feel, parts, run):
     driver.start(INSERT, (INSERT,), held())
     outcome = run(driver, held, feel)
     assert outcome.status is Status.SUCCEEDED, outcome.reason
-    assert re.search(r"pressed with 1[345] N", outcome.reason), outcome.reason
+    assert re.search(r"pressed with 1[2345] N", outcome.reason), outcome.reason
     state = driver.state()
     assert state.tcp_pose[:2] == pytest.approx(seat[:2], abs=1e-3)
     assert (state.gripper_closed, state.gripped) == (False, False)
