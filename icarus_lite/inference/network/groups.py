@@ -26,8 +26,11 @@ def groups_of(design: Design) -> tuple[kernels.GroupProgram, ...]:
 
 
 def label_of(view: View) -> str:
-    """Name the objects that a side of a rule sees: by their type, or by all that is asked."""
+    """Name the objects that a side of a rule sees: by their type, or by all that is asked.
+
+    Views that differ in anything have objects of their own, so they must not share a name.
+    """
     if not is_filtered(view):
         return view.type
-    required = "".join(f" {name}" for name in view.required)
-    return f"{view.type} {view.constants}{required} {' '.join(map(str, view.tests))}"
+    tests = [*map(str, view.tests)]
+    return f"{view.type} {view.cells} {view.required} {view.constants} {tests} {view.variables}"

@@ -100,3 +100,56 @@ def test_derived_columns_of_many_partners_are_read_up_to_date() -> None:
     for height in (14, 175, 100):
         spot = Percept("spot", "o19", {"h": height})
         assert network.update_snapshot([*objects, spot], {}).added == ()
+
+
+FILTERED = """
+(percepts (obj ^x ^h) (spot ^x ^h ^u))
+(concepts
+  ((level ?a ?s) :elements ((obj ?a ^h ?ah) (spot ?s ^h ?sh ^u ?_u))
+                 :tests ((<= (abs (- ?ah (+ ?sh ?sh))) 30)))
+  ((beneath ?a ?s) :elements ((obj ?a ^x ?ax) (spot ?s ^x ?sx ^u ?_u))
+                   :tests ((> (+ ?ax 4) ?sx)))
+  ((tall ?a ?s) :elements ((obj ?a ^x ?ax) (spot ?s ^x ?sx ^h ?v))
+                :tests ((> ?v 200) (<= (abs (- ?ax ?sx)) 60)))
+  ((far ?a ?s) :elements ((obj ?a ^x ?ax) (spot ?s ^x ?sx ^u ?v))
+               :tests ((> ?v 200) (> (abs (- ?ax ?sx)) 60))))
+"""
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_rules_that_leave_out_different_objects_of_one_type(seed: int) -> None:
+    domain, problems = parse_domain(FILTERED)
+    assert domain is not None, problems
+    net, draw = compile_domain(domain).network(), random.Random(seed)
+    there: dict[tuple[str, str], dict[str, int]] = {}
+    for _ in range(12):
+        for number in draw.sample(range(40), 12):
+            there["obj", f"o{number}"] = {each: draw.randrange(0, 400, 7) for each in "xh"}
+        for number in draw.sample(range(12), 4):
+            there["spot", f"s{number}"] = {
+                each: draw.randrange(0, 400, 7) for each in "xhu" if draw.random() < 0.8
+            }
+        net.update_snapshot(percepts(there), ())
+        movers = [name for type_, name in there if type_ == "obj"]
+        for few in (draw.sample(movers, 2), movers):
+            for name in few:
+                there["obj", name] = {each: draw.randrange(0, 400, 7) for each in "xh"}
+            net.move("obj", few, {x: [there["obj", name][x] for name in few] for x in "xh"})
+        found = {(each.predicate, *each.args) for each in net.beliefs()}
+        assert found == {
+            (concept, a, s)
+            for (type_, a), obj in there.items()
+            for (other, s), spot in there.items()
+            if (type_, other) == ("obj", "spot")
+            for concept, holds in {
+                "level": spot.keys() >= {"h", "u"} and abs(obj["h"] - 2 * spot["h"]) <= 30,
+                "beneath": spot.keys() >= {"x", "u"} and obj["x"] + 4 > spot["x"],
+                "tall": spot.keys() >= {"x", "h"}
+                and spot["h"] > 200
+                and abs(obj["x"] - spot["x"]) <= 60,
+                "far": spot.keys() >= {"x", "u"}
+                and spot["u"] > 200
+                and abs(obj["x"] - spot["x"]) > 60,
+            }.items()
+            if holds
+        }
