@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from icarus_lite.inference import InferenceEngine, given_memory, given_percepts
 from icarus_lite.language.checking.report import Report
 from icarus_lite.language.pddl.importer import import_problem
 from icarus_lite.language.pddl.reading import read_pddl_domain, read_pddl_problem
 from icarus_lite.language.reading.sources import read_source
 from icarus_lite.language.syntax import Domain
-from icarus_lite.planning import Imagination
+from icarus_lite.planning.beginning import Beginning, given_beginning
 from icarus_lite.planning.ground_task import GroundTask
 from icarus_lite.planning.grounding import PlanningDomain, ground_goals
 from icarus_lite.records import dataclass
@@ -24,12 +23,12 @@ class Imported:
     """A PDDL problem as it is planned for; grounding it is what remains to be done."""
 
     prepared: PlanningDomain
-    imagination: Imagination
+    beginning: Beginning
     domain: Domain
 
     def ground(self) -> GroundTask:
         """Give the problem without variables."""
-        return ground_goals(self.prepared, self.imagination, self.domain.tasks[0].goals).task
+        return ground_goals(self.prepared, self.beginning, self.domain.tasks[0].goals).task
 
 
 def imported(domain: Path | str, problem: Path | str) -> Imported:
@@ -42,10 +41,8 @@ def imported(domain: Path | str, problem: Path | str) -> Imported:
     read = import_problem(schema, instance, Report(first), Report(second))
     assert read is not None, f"{problem} cannot be translated"
     [task] = read.tasks
-    engine = InferenceEngine(read)
-    memory = engine.step_once(given_memory(read, task.init), given_percepts(read, task.init))
-    imagination = Imagination(read, memory, engine.closure, engine.evaluator)
-    return Imported(PlanningDomain(read, imagination.evaluator), imagination, read)
+    beginning = given_beginning(read, task.init)
+    return Imported(PlanningDomain(read, beginning.evaluator), beginning, read)
 
 
 def actions(task: GroundTask, plan: tuple[int, ...]) -> list[tuple[str, ...]]:

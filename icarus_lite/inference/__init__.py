@@ -8,6 +8,7 @@ from icarus_lite._on_use import imported_on_use
 
 if TYPE_CHECKING:
     from icarus_lite.inference.attachment import ATTACHED, Hierarchy, Link, advance
+    from icarus_lite.inference.beginning import given_memory
     from icarus_lite.inference.closure import Closure
     from icarus_lite.inference.contradictions import Doubt, Judgement, Withdrawal, carried_over
     from icarus_lite.inference.effects import Change, change_of
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
         unify,
         with_values,
     )
-    from icarus_lite.inference.given import GIVEN, given_memory, given_percepts
+    from icarus_lite.inference.given import GIVEN, GivenBeliefs, given_beliefs, given_percepts
     from icarus_lite.inference.matching import Evaluator, Functions, Match, Matcher
     from icarus_lite.inference.near_miss import (
         NearMiss,
@@ -63,6 +64,7 @@ _HOMES = {
     "ForgottenError": "network",
     "Functions": "matching",
     "GIVEN": "given",
+    "GivenBeliefs": "given",
     "Hierarchy": "attachment",
     "InferenceEngine": "engine",
     "Judgement": "contradictions",
@@ -82,7 +84,8 @@ _HOMES = {
     "change_of": "effects",
     "explain": "explanation",
     "first_obstacle": "near_miss",
-    "given_memory": "given",
+    "given_beliefs": "given",
+    "given_memory": "beginning",
     "given_percepts": "given",
     "ground": "facts",
     "match": "facts",
@@ -116,6 +119,7 @@ __all__ = [
     "FactStore",
     "ForgottenError",
     "Functions",
+    "GivenBeliefs",
     "Hierarchy",
     "InferenceEngine",
     "Judgement",
@@ -135,6 +139,7 @@ __all__ = [
     "change_of",
     "explain",
     "first_obstacle",
+    "given_beliefs",
     "given_memory",
     "given_percepts",
     "ground",

@@ -6,10 +6,9 @@ from collections.abc import Iterable
 
 from icarus_lite.inference.attachment import ATTACHED, Hierarchy
 from icarus_lite.inference.effects import Change
-from icarus_lite.inference.engine import BeliefState, Memory
 from icarus_lite.inference.facts import ground
-from icarus_lite.inference.supports import Assertion
 from icarus_lite.language.syntax import Atom, Domain
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Action, Belief, Percept
 
 GIVEN = Action("given")
@@ -32,24 +31,38 @@ def given_percepts(domain: Domain, facts: Iterable[Atom]) -> tuple[Percept, ...]
     )
 
 
-def given_memory(domain: Domain, facts: Iterable[Atom]) -> Memory:
-    """Give the memory of an engine or agent that begins with the facts of `:init`.
+@dataclass(frozen=True, slots=True)
+class GivenBeliefs:
+    """What a task gives besides percepts.
 
-    Attachments go into the hierarchy, everything else that is no percept is asserted and
-    persists, as an effect does. Percepts are left out: they are for the first cycle.
+    Args:
+        asserted: What persists as effects do, in the order given.
+        hierarchy: The attachments.
+        refused: A sentence for each attachment that was refused.
+    """
+
+    asserted: tuple[Belief, ...]
+    hierarchy: Hierarchy
+    refused: tuple[str, ...] = ()
+
+
+def given_beliefs(domain: Domain, facts: Iterable[Atom]) -> GivenBeliefs:
+    """Pick out of the facts of `:init` what no camera reports.
 
     Args:
         domain: Says which predicates are percept types.
         facts: Ground facts.
     """
     types = {percept.name for percept in domain.percepts}
-    beliefs = [ground(fact, {}) for fact in facts if fact.predicate not in types]
-    asserted: dict[Belief, Assertion] = {}
-    attached: list[Belief] = []
-    for belief in beliefs:
-        if belief is not None and belief.predicate == ATTACHED and len(belief.args) == 2:
-            attached.append(belief)
-        elif belief is not None:
-            asserted[belief] = Assertion(GIVEN, 0)
-    hierarchy, refused = Hierarchy().with_change(Change(tuple(attached)), GIVEN, 0)
-    return Memory(BeliefState(hierarchy=hierarchy, notes=refused), asserted)
+    found = [ground(fact, {}) for fact in facts if fact.predicate not in types]
+    beliefs = [belief for belief in found if belief is not None]
+    attached = [each for each in beliefs if _is_attachment(each)]
+    asserted = dict.fromkeys(each for each in beliefs if not _is_attachment(each))
+    hierarchy, refused = Hierarchy(), tuple[str, ...]()
+    if attached:
+        hierarchy, refused = hierarchy.with_change(Change(tuple(attached)), GIVEN, 0)
+    return GivenBeliefs(tuple(asserted), hierarchy, refused)
+
+
+def _is_attachment(belief: Belief) -> bool:
+    return belief.predicate == ATTACHED and len(belief.args) == 2

@@ -9,6 +9,7 @@ from icarus_lite.planning.relevance import Relevance, can_change, relevance
 
 if TYPE_CHECKING:
     from icarus_lite.planning.account import Account
+    from icarus_lite.planning.beginning import Beginning, given_beginning, holds
     from icarus_lite.planning.candidate import Candidate, candidates
     from icarus_lite.planning.causes import CausalLink, Need, Needs, Requirement, pattern_of
     from icarus_lite.planning.failures import Failure, FailureReason
@@ -20,12 +21,14 @@ if TYPE_CHECKING:
     from icarus_lite.planning.projection import Flaw, Projection, Stage, project, rebound, validate
     from icarus_lite.planning.purposes import Purpose, purpose
     from icarus_lite.planning.repair import Rest, later_start, sparse_rest, unmet, working_rest
-    from icarus_lite.planning.situation import Imagination, PlanStep, Situation, holds, plan_step
+    from icarus_lite.planning.situation import Imagination, Situation
+    from icarus_lite.planning.steps import PlanStep, plan_step
     from icarus_lite.planning.subgoals import Ending, Subgoal, Way
     from icarus_lite.planning.weighing import find_plan
 
 _HOMES = {
     "Account": "account",
+    "Beginning": "beginning",
     "Candidate": "candidate",
     "CausalLink": "causes",
     "DEFAULT_LIMIT": "planner",
@@ -39,7 +42,7 @@ _HOMES = {
     "Needs": "causes",
     "NoPlan": "plan",
     "Plan": "plan",
-    "PlanStep": "situation",
+    "PlanStep": "steps",
     "PlanningDomain": "grounding",
     "Projection": "projection",
     "Purpose": "purposes",
@@ -51,11 +54,12 @@ _HOMES = {
     "Way": "subgoals",
     "candidates": "candidate",
     "find_plan": "weighing",
-    "holds": "situation",
+    "given_beginning": "beginning",
+    "holds": "beginning",
     "later_start": "repair",
     "macro": "macros",
     "pattern_of": "causes",
-    "plan_step": "situation",
+    "plan_step": "steps",
     "project": "projection",
     "purpose": "purposes",
     "rebound": "projection",
@@ -69,6 +73,7 @@ _HOMES = {
 __all__ = [
     "DEFAULT_LIMIT",
     "Account",
+    "Beginning",
     "Candidate",
     "CausalLink",
     "Ending",
@@ -95,6 +100,7 @@ __all__ = [
     "can_change",
     "candidates",
     "find_plan",
+    "given_beginning",
     "holds",
     "later_start",
     "macro",

@@ -7,7 +7,7 @@ from heapq import heappop, heappush
 from icarus_lite.language.teams import cost_of
 from icarus_lite.planning.ground_task import GroundTask, State
 from icarus_lite.planning.lower_bound import at_least
-from icarus_lite.planning.situation import PlanStep
+from icarus_lite.planning.steps import PlanStep
 
 MOST_CHECKS = 200_000
 """How often it is asked whether an operator can start before the look around is given up."""

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 from icarus_lite.inference import ATTACHED, Closure, Hierarchy
 from icarus_lite.language.syntax import Condition, Domain
-from icarus_lite.planning.situation import Imagination, PlanStep, Situation
+from icarus_lite.planning.situation import Imagination, Situation
+from icarus_lite.planning.steps import PlanStep
 
 
 class Focus(Imagination):

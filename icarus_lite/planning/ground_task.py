@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TypeAlias
 
-from icarus_lite.planning.situation import PlanStep
+from icarus_lite.planning.steps import PlanStep
 from icarus_lite.records import dataclass
 from icarus_lite.symbols import Belief
 

@@ -32,7 +32,7 @@ from icarus_lite.language.syntax import (
 from icarus_lite.planning.causes import Requirement, pattern_of
 from icarus_lite.planning.plan import Plan
 from icarus_lite.planning.projection import Stage
-from icarus_lite.planning.situation import PlanStep
+from icarus_lite.planning.steps import PlanStep
 from icarus_lite.records import dataclass
 from icarus_lite.symbols import Value
 

@@ -8,7 +8,7 @@ from icarus_lite.language.syntax import Condition
 from icarus_lite.planning.account import Account
 from icarus_lite.planning.causes import CausalLink, Needs, Requirement
 from icarus_lite.planning.failures import FailureReason
-from icarus_lite.planning.situation import PlanStep
+from icarus_lite.planning.steps import PlanStep
 from icarus_lite.records import dataclass, field, replace
 
 

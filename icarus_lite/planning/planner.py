@@ -62,9 +62,9 @@ def find_plan(
     if imagination.holds(goals, facts):
         return Plan((), tuple(goals))
     kept = prepared or PlanningDomain(domain, imagination.evaluator)
-    grounding = ground_goals(kept, imagination, goals, excluded=excluded)
+    grounding = ground_goals(kept, imagination.beginning, goals, excluded=excluded)
     if grounding.hopeless:
-        if excluded and not ground_goals(kept, imagination, goals).hopeless:
+        if excluded and not ground_goals(kept, imagination.beginning, goals).hopeless:
             wanted = " ".join(map(str, grounding.hopeless))
             return NoPlan(f"no other way leads to {wanted}", final=True)
         return NoPlan(_hopeless(domain, imagination, grounding, facts), final=True)

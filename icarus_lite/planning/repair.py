@@ -13,7 +13,8 @@ from icarus_lite.planning.causes import Requirement
 from icarus_lite.planning.links import with_links
 from icarus_lite.planning.plan import Plan
 from icarus_lite.planning.projection import Projection, project, rebound
-from icarus_lite.planning.situation import Imagination, PlanStep
+from icarus_lite.planning.situation import Imagination
+from icarus_lite.planning.steps import PlanStep
 from icarus_lite.records import dataclass
 from icarus_lite.symbols import Action
 

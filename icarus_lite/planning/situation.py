@@ -16,49 +16,15 @@ from icarus_lite.inference import (
     Memory,
     Support,
     advance,
-    change_of,
-    ground,
     percept_facts,
     with_values,
 )
 from icarus_lite.language.syntax import Condition, Domain, SkillClause
+from icarus_lite.planning.beginning import Beginning, holds
 from icarus_lite.planning.layers import LayeredFacts, fluents_of
+from icarus_lite.planning.steps import PlanStep, plan_step
 from icarus_lite.records import dataclass, replace
 from icarus_lite.symbols import Action, Belief, Value
-
-
-@dataclass(frozen=True, slots=True)
-class PlanStep:
-    """One skill instance of a plan.
-
-    Args:
-        action: The skill with its arguments.
-        commands: What the driver is to carry out for it.
-        clause: The clause of the skill that was chosen.
-        bindings: What the clause's variables are bound to.
-        change: What will be believed, or no longer, once it has succeeded.
-    """
-
-    action: Action
-    commands: tuple[Action, ...]
-    clause: SkillClause
-    bindings: tuple[tuple[str, Value], ...]
-    change: Change
-
-
-def plan_step(clause: SkillClause, bindings: Mapping[str, Value]) -> PlanStep | None:
-    """Give a primitive skill instance as a step; None if an argument of it is still free."""
-    head = ground(clause.head, bindings)
-    commands = tuple(ground(command, bindings) for command in clause.actions)
-    if head is None or None in commands:
-        return None
-    return PlanStep(
-        Action(head.predicate, head.args),
-        tuple(Action(c.predicate, c.args) for c in commands if c is not None),
-        clause,
-        tuple(sorted(bindings.items())),
-        change_of(clause.effects, bindings),
-    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,6 +101,12 @@ class Imagination:
     def now(self) -> FactStore:
         """What is believed now, taken in as it is asked for: the same as the facts of `start`."""
         return self._state.facts()
+
+    @property
+    def beginning(self) -> Beginning:
+        """The same, as grounding needs it."""
+        asserted, hierarchy = self.start.asserted, self.start.hierarchy
+        return Beginning(self._percepts, asserted, hierarchy, self.now, self.evaluator)
 
     def facts(self, situation: Situation) -> FactStore:
         """Give all that would be believed in a situation, percepts included."""
@@ -240,15 +212,3 @@ class Imagination:
         return replace(
             imagined, assumed=imagined.assumed | assumed, denied=imagined.denied | denied
         )
-
-
-def holds(
-    conditions: Sequence[Condition],
-    facts: FactStore,
-    bindings: dict[str, Value] | None = None,
-    evaluator: Evaluator | None = None,
-) -> bool:
-    """Tell whether a conjunction holds for some binding of its free variables."""
-    bound = tuple(bindings or ())
-    found = (evaluator or Evaluator()).matcher(conditions, (), bound).matches(facts, bindings)
-    return any(True for _ in found)

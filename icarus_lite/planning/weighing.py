@@ -17,7 +17,8 @@ from icarus_lite.planning.cheapest import cheaper_plan, least_cost
 from icarus_lite.planning.grounding import PlanningDomain, ground_goals
 from icarus_lite.planning.plan import NoPlan, Plan
 from icarus_lite.planning.postponing import postponed
-from icarus_lite.planning.situation import Imagination, PlanStep
+from icarus_lite.planning.situation import Imagination
+from icarus_lite.planning.steps import PlanStep
 from icarus_lite.records import replace
 from icarus_lite.symbols import Action
 
@@ -68,7 +69,7 @@ def find_plan(
         )
 
     found = _alone(kept, imagination, goals, excluded, options)
-    task = ground_goals(kept, imagination, goals, excluded=excluded).task
+    task = ground_goals(kept, imagination.beginning, goals, excluded=excluded).task
     if found is not None and least_cost(task) >= cost_of_plan(found):
         return postponed(imagination, found)
     helped = ask(excluded) if found is None or _may_be_cheaper(domain, found) else found

@@ -63,7 +63,7 @@ def walk(
     imagination = imagined(engine, memory)
     watched = changing(domain)
     kept = PlanningDomain(domain, engine.evaluator)
-    grounding = ground_goals(kept, imagination, goals, watched=watched)
+    grounding = ground_goals(kept, imagination.beginning, goals, watched=watched)
     task, fluents = grounding.task, grounding.fluents
     wanted = [*goals, *(Condition(Atom(name)) for name in watched)]
     skills = relevance(domain, wanted).skills

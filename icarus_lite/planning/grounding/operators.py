@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from icarus_lite.planning.ground_task import GroundOperator, State
 from icarus_lite.planning.grounding.instances import Instance
-from icarus_lite.planning.situation import PlanStep, plan_step
+from icarus_lite.planning.steps import PlanStep, plan_step
 
 
 class InstanceOperator(GroundOperator):

@@ -7,17 +7,17 @@ from functools import partial
 from typing import Any, TypeAlias
 
 from icarus_lite.errors import InferenceError
-from icarus_lite.inference import ATTACHED, Evaluator, FactStore
+from icarus_lite.inference import ATTACHED
 from icarus_lite.inference.expressions import compile_bind, compile_test
 from icarus_lite.language.syntax import ConceptClause
+from icarus_lite.planning.beginning import Beginning
 from icarus_lite.planning.grounding.attaching import Attaching
 from icarus_lite.planning.grounding.clauses import GroundedClause
 from icarus_lite.planning.grounding.facts import GIVEN, HELD, FactBase, static_index
 from icarus_lite.planning.grounding.prepared import Prepared
 from icarus_lite.planning.grounding.views import Attributes, Cells, Index, sorted_attributes
-from icarus_lite.planning.situation import Situation
 from icarus_lite.records import dataclass
-from icarus_lite.symbols import Action, Belief, Value
+from icarus_lite.symbols import Action, Value
 
 Found: TypeAlias = tuple[Cells, tuple[int, ...], tuple[int, ...]]
 """An instance: what its variables are bound to, the facts that it rests on, those it makes true."""
@@ -38,23 +38,6 @@ class Reached:
     found: tuple[list[Found], ...]
     initial: frozenset[int]
     permanent: frozenset[int]
-
-
-@dataclass(frozen=True, slots=True)
-class Beginning:
-    """The beliefs of now, as grounding needs them.
-
-    Args:
-        percepts: What is perceived, as facts.
-        situation: What is asserted, and who moves with whom.
-        facts: All that is believed, derived beliefs included.
-        evaluator: Evaluates the tests of the domain.
-    """
-
-    percepts: Sequence[Belief]
-    situation: Situation
-    facts: FactStore
-    evaluator: Evaluator
 
 
 def reach(prepared: Prepared, beginning: Beginning, excluded: Collection[Action] = ()) -> Reached:
@@ -104,14 +87,14 @@ def _begin(
     }
     perceived = {(fact.predicate, fact.args) for fact in beginning.percepts}
     asserted = set()
-    for belief in sorted(beginning.situation.asserted, key=str):
+    for belief in sorted(beginning.asserted, key=str):
         predicate = belief.predicate
         if predicate not in prepared.fluents or (predicate, belief.args) in perceived:
             continue
         name = GIVEN + predicate if predicate in prepared.concepts else predicate
         asserted.add(base.note(name, belief.args, sorted_attributes(belief.attributes)))
     if ATTACHED in prepared.fluents:
-        pairs = sorted(beginning.situation.hierarchy.pairs(), key=str)
+        pairs = sorted(beginning.hierarchy.pairs(), key=str)
         asserted.update(base.note(prepared.hierarchy, pair) for pair in pairs)
     return frozenset(permanent), frozenset(asserted)
 

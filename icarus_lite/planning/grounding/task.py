@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterator, Sequence
 
 from icarus_lite.inference import Closure
 from icarus_lite.language.syntax import Condition, Domain
+from icarus_lite.planning.beginning import Beginning
 from icarus_lite.planning.ground_task import GroundTask
 from icarus_lite.planning.grounding.bits import Bits, assign_bits
 from icarus_lite.planning.grounding.closing import Closing
@@ -14,11 +15,10 @@ from icarus_lite.planning.grounding.instances import Instance, Literals
 from icarus_lite.planning.grounding.literals import Translation
 from icarus_lite.planning.grounding.operators import InstanceOperator
 from icarus_lite.planning.grounding.prepared import PlanningDomain
-from icarus_lite.planning.grounding.reachability import Beginning, Reached, reach
+from icarus_lite.planning.grounding.reachability import Reached, reach
 from icarus_lite.planning.grounding.rules import rules_of
 from icarus_lite.planning.grounding.simplification import Simplified, left_of, simplify
 from icarus_lite.planning.grounding.special_effects import links_of, special_effects
-from icarus_lite.planning.situation import Imagination
 from icarus_lite.records import dataclass
 from icarus_lite.symbols import Action, Belief
 
@@ -51,7 +51,7 @@ class Grounding:
 
 def ground_task(
     domain: Domain,
-    imagination: Imagination,
+    beginning: Beginning,
     goals: Sequence[Condition],
     *,
     excluded: Collection[Action] = (),
@@ -62,7 +62,7 @@ def ground_task(
 
     Args:
         domain: Skills, concepts and attachments.
-        imagination: The beliefs of now.
+        beginning: The beliefs of now.
         goals: The conjunction to achieve.
         excluded: Actions that must not be used.
 
@@ -70,13 +70,13 @@ def ground_task(
         InferenceError: a test cannot be evaluated for what is believed now.
     """
     return ground_goals(
-        PlanningDomain(domain, imagination.evaluator), imagination, goals, excluded=excluded
+        PlanningDomain(domain, beginning.evaluator), beginning, goals, excluded=excluded
     ).task
 
 
 def ground_goals(
     domain: PlanningDomain,
-    imagination: Imagination,
+    beginning: Beginning,
     goals: Sequence[Condition],
     *,
     excluded: Collection[Action] = (),
@@ -86,7 +86,7 @@ def ground_goals(
 
     Args:
         domain: The domain, with what grounding has made of it.
-        imagination: The beliefs of now.
+        beginning: The beliefs of now.
         goals: The conjunction to achieve.
         excluded: Actions that must not be used.
         watched: Predicates whose facts are to be in the states although the goals need not
@@ -96,8 +96,7 @@ def ground_goals(
         InferenceError: a test cannot be evaluated for what is believed now.
     """
     prepared = domain.prepare(goals, watched or ())
-    now = Beginning(imagination.percepts, imagination.start, imagination.now, imagination.evaluator)
-    reached = reach(prepared, now, excluded)
+    reached = reach(prepared, beginning, excluded)
     translation = Translation(prepared, reached)
     problem = translation.literals()
     wanted = translation.goal(prepared.goals)
@@ -105,7 +104,7 @@ def ground_goals(
     hopeless += [
         goal
         for goal in prepared.goals
-        if goal.atom.predicate not in prepared.fluents and not imagination.holds([goal], now.facts)
+        if goal.atom.predicate not in prepared.fluents and not beginning.holds([goal])
     ]
     literals = [x for _, found in wanted for x in found or ()]
     simplified = simplify(problem, literals if watched is None else None)

@@ -11,7 +11,8 @@ from icarus_lite.language import parse_domain
 from icarus_lite.language.fragments import parse_conditions
 from icarus_lite.language.syntax import Domain
 from icarus_lite.planning import Plan, find_plan, project, unmet, with_links
-from icarus_lite.planning.situation import Situation, plan_step
+from icarus_lite.planning.situation import Situation
+from icarus_lite.planning.steps import plan_step
 from icarus_lite.symbols import Belief
 from tests.reference.ground_walks import imagined
 

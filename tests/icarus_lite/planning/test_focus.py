@@ -11,7 +11,7 @@ from icarus_lite.planning import Plan, find_plan, validate
 from icarus_lite.planning.focus import Focus
 from icarus_lite.planning.grounding import PlanningDomain, ground_goals
 from icarus_lite.planning.layers import LayeredFacts, fluents_of
-from icarus_lite.planning.situation import PlanStep
+from icarus_lite.planning.steps import PlanStep
 from icarus_lite.symbols import Belief
 from tests.icarus_lite.planning.grounding.test_task import HANDS, SCENE
 from tests.reference.ground_walks import imagined, random_goals
@@ -30,7 +30,7 @@ def borne_out(goal: str, change: Sequence[int] | None) -> str:
     steps: list[PlanStep] = list(plan.steps)
     if change is not None:
         steps = [steps[number] for number in change]
-    ground = ground_goals(PlanningDomain(domain), imagination, goals)
+    ground = ground_goals(PlanningDomain(domain), imagination.beginning, goals)
     return Focus(imagination, domain, ground.closure, ground.fluents).bears_out(steps, goals)
 
 
@@ -62,7 +62,7 @@ def test_it_agrees_with_the_whole_imagination() -> None:
         plan = find_plan(domain, imagination, goals) if goals else None
         if not isinstance(plan, Plan) or not plan.steps:
             continue
-        ground = ground_goals(PlanningDomain(domain), imagination, goals)
+        ground = ground_goals(PlanningDomain(domain), imagination.beginning, goals)
         for steps in (plan.steps, plan.steps[:-1], plan.steps[::-1]):
             focus = Focus(imagination, domain, ground.closure, ground.fluents)
             works = not focus.bears_out(steps, goals)

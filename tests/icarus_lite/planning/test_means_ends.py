@@ -228,7 +228,7 @@ def imagine(name: str, percepts: list[Percept]) -> Imagination:
 def test_sussmans_anomaly_is_solved_though_either_goal_undoes_the_other() -> None:
     imagination = imagine("blocks.icr", blocks("ac", "b"))
     goals = parse_conditions("((on a b) (on b c))")
-    task = ground_task(engine_of("blocks.icr").domain, imagination, goals)
+    task = ground_task(engine_of("blocks.icr").domain, imagination.beginning, goals)
     found = means_ends(task)
     assert found.plan is not None
     assert leads(task, found.plan)

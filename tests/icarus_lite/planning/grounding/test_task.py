@@ -45,7 +45,7 @@ def task(text: str, goal: str, percepts: list[Percept] = SCENE, **options: objec
     domain = domain_of(text)
     engine = InferenceEngine(domain)
     imagination = imagined(engine, engine.step(Memory(), percepts))
-    return ground_task(domain, imagination, parse_conditions(goal), **options)
+    return ground_task(domain, imagination.beginning, parse_conditions(goal), **options)
 
 
 def atoms(found: GroundTask) -> set[str]:
@@ -87,7 +87,7 @@ def test_a_problem_without_derived_atoms_needs_no_closure() -> None:
                        " :effects ((at ?x) (not (away ?x)))))")  # fmt: skip
     engine = InferenceEngine(strips)
     imagination = imagined(engine, engine.step(Memory(), [Percept("o", "a")]))
-    found = ground_task(strips, imagination, parse_conditions("(at a)"))
+    found = ground_task(strips, imagination.beginning, parse_conditions("(at a)"))
     assert found.closure is None
     assert found.rules == ()
     assert found.operators[0].exception is None
@@ -226,7 +226,7 @@ for seed in range(6):
     domain = start.engine.domain
     watched = changing(domain)
     imagination = imagined(start.engine, start.memory)
-    task = ground_goals(PlanningDomain(domain), imagination, (), watched=watched).task
+    task = ground_goals(PlanningDomain(domain), imagination.beginning, (), watched=watched).task
     print([str(atom) for atom in task.atoms], task.initial, task.rules)
     print([(str(op.step.action), op.conditions, op.add, op.keep) for op in task.operators])
 """

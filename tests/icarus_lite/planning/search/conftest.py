@@ -7,9 +7,10 @@ from collections import deque
 
 import pytest
 
+from icarus_lite.inference import change_of
 from icarus_lite.language.syntax import Atom, SkillClause
 from icarus_lite.planning.ground_task import GroundAtom, GroundOperator, GroundRule, GroundTask
-from icarus_lite.planning.situation import PlanStep, change_of
+from icarus_lite.planning.steps import PlanStep
 from icarus_lite.symbols import Action, Belief
 
 
