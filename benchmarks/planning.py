@@ -12,6 +12,7 @@ on from there.
 from __future__ import annotations
 
 import argparse
+import ast
 import json
 import os
 import resource
@@ -171,7 +172,7 @@ def measured(
         told = done.stderr.strip().splitlines()
         reason = told[-1] if done.returncode > 0 and told else f"nothing in {seconds} s"
         return Run(cpu_s, None, {}, reason)
-    report = json.loads(done.stdout.splitlines()[-1])
+    report = ast.literal_eval(done.stdout.splitlines()[-1])
     plan = report.pop("plan")
     if plan is None:
         reason = "called unsolvable" if report["unsolvable"] else f"nothing in {seconds} s"

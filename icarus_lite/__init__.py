@@ -6,11 +6,10 @@ one of them, or only one module of the package, does not wait for all the others
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING
-
+from icarus_lite._on_use import imported_on_use
 from icarus_lite._version import __version__
 
+TYPE_CHECKING = False
 if TYPE_CHECKING:
     from icarus_lite.agent import (
         Agent,
@@ -81,9 +80,4 @@ __all__ = [
     "load_domain",
 ]
 
-
-def __getattr__(name: str) -> object:
-    """Import a public name from its module when it is first used."""
-    if name not in _HOMES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
+__getattr__ = imported_on_use(__name__, _HOMES)

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Mapping
-from importlib import import_module
 
 
 def imported_on_use(package: str, homes: Mapping[str, str]) -> Callable[[str], object]:
@@ -25,7 +24,8 @@ def imported_on_use(package: str, homes: Mapping[str, str]) -> Callable[[str], o
     def imported(name: str) -> object:
         if name not in homes:
             raise AttributeError(f"module {package!r} has no attribute {name!r}")
-        found = getattr(import_module(f"{package}.{homes[name]}"), name)
+        __import__(home := f"{package}.{homes[name]}")  # `importlib` takes as long as a module
+        found = getattr(sys.modules[home], name)
         setattr(sys.modules[package], name, found)
         return found
 

@@ -10,11 +10,10 @@ import re
 from collections.abc import Mapping
 from enum import StrEnum
 from types import MappingProxyType
-from typing import TypeAlias
 
 from icarus_lite.records import dataclass, field
 
-Value: TypeAlias = str | int | float
+Value = str | int | float
 """What a variable may be bound to: a symbol (or string), an integer or a float."""
 
 _SYMBOL = re.compile(r"[^\s()\"';?:^*|#]+(?<![.])|\d+(\.\d+)+", re.ASCII)

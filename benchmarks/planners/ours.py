@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import atexit
 import gc
-import json
 import sys
 import time
 from os.path import abspath, dirname
@@ -23,7 +22,7 @@ STARTED = time.process_time()
 
 
 def main(domain: str, problem: str, seconds: float, *, shorter: bool) -> None:
-    """Plan, and print what came of it as JSON."""
+    """Plan, and print what came of it as a Python literal."""
     given = imported(domain, problem)
     read = time.process_time()
     task = given.ground()
@@ -47,7 +46,7 @@ def main(domain: str, problem: str, seconds: float, *, shorter: bool) -> None:
         "operators": len(task.operators),
         "end_s": time.process_time(),
     }
-    print(json.dumps(report))
+    print(report)
 
 
 main(sys.argv[1], sys.argv[2], float(sys.argv[3]), shorter="improve" in sys.argv[4:])

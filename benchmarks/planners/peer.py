@@ -5,7 +5,6 @@ python peer.py DOMAIN PROBLEM
 
 from __future__ import annotations
 
-import json
 import sys
 import time
 from typing import Any
@@ -28,7 +27,7 @@ class Counted(hFFHeuristic):  # type: ignore[misc]
 
 
 def main(domain: str, problem: str) -> None:
-    """Plan, and print what came of it as JSON."""
+    """Plan, and print what came of it as a Python literal."""
     task = _ground(_parse(domain, problem))
     plan = SEARCHES["gbfs"](task, Counted(task))
     report = {
@@ -38,7 +37,7 @@ def main(domain: str, problem: str) -> None:
         "start_s": STARTED,
         "end_s": time.process_time(),
     }
-    print(json.dumps(report))
+    print(report)
 
 
 main(sys.argv[1], sys.argv[2])

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from icarus_lite.language.checking.report import Report
 from icarus_lite.language.pddl.importer import import_problem
 from icarus_lite.language.pddl.reading import read_pddl_domain, read_pddl_problem
@@ -14,6 +12,7 @@ from icarus_lite.planning.ground_task import GroundTask
 from icarus_lite.planning.grounding import PlanningDomain, ground_goals
 from icarus_lite.records import dataclass
 
+TYPE_CHECKING = False
 if TYPE_CHECKING:
     from pathlib import Path
 

@@ -13,7 +13,6 @@ import operator
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from operator import itemgetter
-from typing import TypeAlias
 
 from icarus_lite.inference.views import Row
 from icarus_lite.language.functions import (
@@ -28,11 +27,11 @@ from icarus_lite.language.functions import (
 from icarus_lite.language.syntax import Call, Constant, Expression, Variable
 from icarus_lite.symbols import Value, is_number
 
-Compiled: TypeAlias = Callable[[Row], Value | bool]
+Compiled = Callable[[Row], Value | bool]
 """Gives the value of an expression for a row."""
 
-_Number: TypeAlias = Callable[[Row], float]
-_Slots: TypeAlias = Mapping[str, int]
+_Number = Callable[[Row], float]
+_Slots = Mapping[str, int]
 
 _MOST = sys.float_info.max
 _BINARY: Mapping[str, Callable[[float, float], float]] = {

@@ -19,7 +19,6 @@ from bisect import bisect_left
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from enum import Enum
 from operator import itemgetter
-from typing import TypeAlias
 
 from icarus_lite.inference.expressions import Compiled, compile_test, conjoin
 from icarus_lite.inference.facts import FactStore
@@ -101,7 +100,7 @@ class Step:
         return iter(found)
 
 
-Tick: TypeAlias = Callable[[], None]
+Tick = Callable[[], None]
 """Looks at the clock; raises an error when the time is over."""
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import TypeAlias
 
 from icarus_lite.inference.facts import Bindings, FactStore
 from icarus_lite.inference.join import Conjunction, Plan, compile_plan
@@ -13,7 +12,7 @@ from icarus_lite.language.syntax import Atom, Call, Condition, Expression, Varia
 from icarus_lite.records import dataclass, field
 from icarus_lite.symbols import Belief, Value
 
-Functions: TypeAlias = Mapping[str, Callable[..., Value | bool]]
+Functions = Mapping[str, Callable[..., Value | bool]]
 """Python predicates registered by name, beside the built-in functions of `:tests`."""
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TypeAlias
 
 from icarus_lite.language.syntax import (
     Atom,
@@ -49,9 +48,9 @@ class Assertion:
     cycle: int
 
 
-Support: TypeAlias = Derivation | Assertion
+Support = Derivation | Assertion
 
-Literal: TypeAlias = Condition | Call
+Literal = Condition | Call
 """One condition or test of a conjunction."""
 
 

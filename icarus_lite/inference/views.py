@@ -10,20 +10,19 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from operator import itemgetter
-from typing import TypeAlias
 
 from icarus_lite.symbols import Belief, Value
 
-Row: TypeAlias = tuple[Value, ...]
+Row = tuple[Value, ...]
 """Values in the order of a plan's slots: its constants, then its variables as they are bound."""
 
-Key: TypeAlias = Value | Row
+Key = Value | Row
 """What a fact is looked up by: the bare value where it is only one."""
 
-Entry: TypeAlias = tuple[Row, Belief, int]
+Entry = tuple[Row, Belief, int]
 """A fact in an index: the values it adds to a row, the fact, and its number in its store."""
 
-Index: TypeAlias = dict[Key, list[Entry]]
+Index = dict[Key, list[Entry]]
 """Entries by key, each list in the order in which the facts came to be believed."""
 
 

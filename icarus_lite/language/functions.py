@@ -9,14 +9,13 @@ import math
 from collections.abc import Callable, Mapping
 from enum import StrEnum
 from types import MappingProxyType
-from typing import TypeAlias
 
 from icarus_lite.errors import InferenceError
 from icarus_lite.language.syntax import Call, Constant, Expression, Span, Variable
 from icarus_lite.records import dataclass
 from icarus_lite.symbols import Value, format_value, is_number
 
-PythonFunctions: TypeAlias = Mapping[str, Callable[..., Value | bool]]
+PythonFunctions = Mapping[str, Callable[..., Value | bool]]
 """Functions of the host program, by the name a domain calls them."""
 
 NO_FUNCTIONS: PythonFunctions = MappingProxyType({})

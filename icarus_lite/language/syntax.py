@@ -6,7 +6,6 @@ Spans never take part in comparison, so two trees are equal when they mean the s
 from __future__ import annotations
 
 from enum import StrEnum
-from typing import TypeAlias
 
 from icarus_lite.records import dataclass, field
 from icarus_lite.symbols import Value, format_value
@@ -84,7 +83,7 @@ class Constant:
         return format_value(self.value)
 
 
-Term: TypeAlias = Variable | Constant
+Term = Variable | Constant
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,7 +134,7 @@ class Call:
         return f"({' '.join([self.function, *map(str, self.args)])})"
 
 
-Expression: TypeAlias = Variable | Constant | Call
+Expression = Variable | Constant | Call
 
 
 @dataclass(frozen=True, slots=True)

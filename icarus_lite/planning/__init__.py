@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from icarus_lite._on_use import imported_on_use
 from icarus_lite.planning.relevance import Relevance, can_change, relevance
 
+TYPE_CHECKING = False
 if TYPE_CHECKING:
     from icarus_lite.planning.account import Account
     from icarus_lite.planning.beginning import Beginning, given_beginning, holds

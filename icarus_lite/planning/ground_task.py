@@ -8,13 +8,12 @@ condition wants false has a second bit, its complement, so that all conditions a
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TypeAlias
 
 from icarus_lite.planning.steps import PlanStep
 from icarus_lite.records import dataclass
 from icarus_lite.symbols import Belief
 
-State: TypeAlias = int
+State = int
 """The atoms that hold, a bit each; derived atoms and complements included."""
 
 

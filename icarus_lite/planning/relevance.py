@@ -9,13 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
 from itertools import chain
-from typing import TypeAlias
 
 from icarus_lite.inference import ATTACHED
 from icarus_lite.language.syntax import Condition, Domain, SkillClause
 from icarus_lite.records import dataclass
 
-Sign: TypeAlias = tuple[str, bool]
+Sign = tuple[str, bool]
 """A predicate, and whether it is to become true or false."""
 
 

@@ -1,4 +1,4 @@
-"""Data classes whose `__init__` is written when the first instance is made.
+"""Data classes whose `__init__` is compiled only where many instances are made.
 
 What `dataclasses.dataclass` does at once is done in two parts here. Slots, equality, hash, order of
 the fields: at once, by functions that all classes share. The `__init__`, which has to be compiled,
@@ -13,8 +13,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from operator import attrgetter
 from reprlib import recursive_repr
+from types import MethodType
 
-from icarus_lite.records.writing import MISSING, init_of, init_of_frozen
+from icarus_lite.records.writing import MISSING, init_of, init_of_frozen, uncompiled_init
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -102,6 +103,29 @@ class _Late:
         return made if instance is None or not callable(made) else made.__get__(instance, owner)
 
 
+_UNCOMPILED = 32
+"""How many instances of a class are made before its `__init__` is compiled."""
+
+
+class _LateInit(_Late):
+    """An `__init__` that is compiled when many instances are made, or somebody looks at it."""
+
+    __slots__ = ("_frozen", "_left", "_uncompiled")
+
+    def __init__(self, *, frozen: bool) -> None:
+        super().__init__(init_of_frozen if frozen else init_of)
+        self._frozen, self._left = frozen, _UNCOMPILED
+        self._uncompiled: Callable[..., None] | None = None
+
+    def __get__(self, instance: Any, owner: Any = None) -> Any:
+        if instance is None or not self._left:
+            return super().__get__(instance, owner)
+        self._left -= 1
+        if self._uncompiled is None:
+            self._uncompiled = uncompiled_init(self._owner, frozen=self._frozen)
+        return MethodType(self._uncompiled, instance)
+
+
 def _made(cls: Any, frozen: bool, slots: bool, eq: bool) -> Any:  # noqa: FBT001 - as they came
     fields: dict[str, Field] = {}
     for base in cls.__mro__[-1:0:-1]:
@@ -128,7 +152,7 @@ def _added(
     """Give what a class gets besides what is written in it."""
     own = cls.__dict__
     methods: dict[str, Any] = {
-        "__init__": _Late(init_of_frozen if frozen else init_of),
+        "__init__": _LateInit(frozen=frozen),
         "__repr__": _representation([name for name, each in fields.items() if each.repr]),
     }
     if eq:

@@ -1,15 +1,17 @@
-"""The `__init__` of a data class, written when it is first asked for."""
+"""The `__init__` of a data class: the one that works at once, and the one that is compiled."""
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
-from functools import cache
+from collections.abc import Callable, Mapping
+from functools import cache, partial
 from types import FunctionType, MemberDescriptorType
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, Final
+
+    from icarus_lite.records.late import Field
 
 
 class _Missing:
@@ -38,6 +40,7 @@ def init_of_frozen(cls: Any) -> FunctionType:
 def _init(cls: Any, *, frozen: bool) -> FunctionType:
     """Give the code of a class's shape, with its own names."""
     fields, names, defaults, known = cls.__late_fields__, {"self": "self"}, [], {}
+    _required(fields)
     shape = ""
     for name, each in fields.items():
         made = each.default_factory is not MISSING
@@ -54,8 +57,6 @@ def _init(cls: Any, *, frozen: bool) -> FunctionType:
             known[f"_set_{index}"] = _setter(cls, name)
         if each.init and (made or each.default is not MISSING):
             defaults.append(each.default)
-        elif each.init and defaults:
-            raise TypeError(f"non-default argument {name!r} follows default argument")
     template = _template(shape, frozen, hasattr(cls, "__post_init__"))(**known)
     code = template.__code__
     init = FunctionType(
@@ -74,6 +75,74 @@ def _init(cls: Any, *, frozen: bool) -> FunctionType:
         "return": None,
     }
     return init
+
+
+def uncompiled_init(cls: Any, *, frozen: bool) -> Callable[..., None]:
+    """Give an `__init__` that does the same more slowly, for the first few instances.
+
+    Most classes never have more than a few, and compiling costs as much as sixty of them.
+    """
+    fields: dict[str, Field] = cls.__late_fields__
+    assigned = [
+        (_setter(cls, name) if frozen else partial(_set, name), name, each)
+        for name, each in fields.items()
+        if each.init or each.default_factory is not MISSING or each.default is not MISSING
+    ]
+    order: tuple[str, ...] = cls.__match_args__
+    puts = tuple([put for put, _, _ in assigned])
+    is_plain = tuple([name for _, name, _ in assigned]) == order
+    required = _required(fields)
+    then = getattr(cls, "__post_init__", None)
+
+    def __init__(instance: Any, *given: Any, **named: Any) -> None:  # noqa: N807 - stands for it
+        if is_plain and not named and len(given) == len(order):
+            for put, value in zip(puts, given):  # noqa: B905 - as many as there are
+                put(instance, value)
+            if then is not None:
+                then(instance)
+            return
+        values = dict(zip(order, given))  # noqa: B905 - the next lines look at the lengths
+        if (
+            len(given) > len(order)
+            or not values.keys().isdisjoint(named)
+            or not named.keys() <= set(order)
+            or not required <= values.keys() | named.keys()
+        ):
+            compiled = init_of_frozen(cls) if frozen else init_of(cls)
+            compiled(instance, *given, **named)  # which says what is wrong
+            return
+        values |= named
+        for put, name, each in assigned:
+            value = values.get(name, each.default)
+            if value is MISSING and each.default_factory is not MISSING:
+                value = each.default_factory()
+            put(instance, value)
+        if then is not None:
+            then(instance)
+
+    return __init__
+
+
+def _required(fields: Mapping[str, Field]) -> frozenset[str]:
+    """Give the fields that must be given.
+
+    Raises:
+        TypeError: one of them follows one with a default.
+    """
+    required = []
+    defaults = False
+    for name, each in fields.items():
+        if each.init and each.default is MISSING and each.default_factory is MISSING:
+            if defaults:
+                raise TypeError(f"non-default argument {name!r} follows default argument")
+            required.append(name)
+        elif each.init:
+            defaults = True
+    return frozenset(required)
+
+
+def _set(name: str, instance: Any, value: Any) -> None:
+    setattr(instance, name, value)
 
 
 def _setter(cls: Any, name: str) -> Callable[[Any, Any], None]:

@@ -28,4 +28,4 @@ def test_the_names_are_sorted_and_told_once() -> None:
 def test_importing_the_package_imports_no_engine() -> None:
     code = "import sys, icarus_lite; print(*sorted(m for m in sys.modules if 'icarus' in m))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.split() == ["icarus_lite", "icarus_lite._version"]
+    assert done.stdout.split() == ["icarus_lite", "icarus_lite._on_use", "icarus_lite._version"]

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from icarus_lite._on_use import imported_on_use
 
+TYPE_CHECKING = False
 if TYPE_CHECKING:
     from icarus_lite.language.pddl.codes import PDDL_CODES
     from icarus_lite.language.pddl.exporter import Exported, export_task

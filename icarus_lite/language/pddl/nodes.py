@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from typing import TypeAlias, TypeGuard
 
 from icarus_lite.language.checking.report import Report
 from icarus_lite.language.reading.brackets import MAX_DEPTH
 from icarus_lite.language.syntax import Span
 from icarus_lite.records import dataclass
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import TypeGuard
 
 _TOKEN = re.compile(r"[()]|[^\s();\"]+|;.*|(?P<alien>\")")
 _LEGAL = re.compile(r"[?:]?[A-Za-z][A-Za-z0-9_-]*|[A-Za-z0-9_.+-]+|[<>]=?|[=*/#-]", re.ASCII)
@@ -40,7 +43,7 @@ class Group:
         return first.text if isinstance(first, Word) else ""
 
 
-Node: TypeAlias = Word | Group
+Node = Word | Group
 
 
 def is_word(node: Node | None) -> TypeGuard[Word]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from contextlib import suppress
 from types import MappingProxyType
 
 from icarus_lite.language.checking.report import Report
@@ -57,9 +56,10 @@ def read_pddl_domain(source: Source) -> tuple[PddlDomain | None, tuple[Diagnosti
         the order of the text.
     """
     report = Report(source)
-    domain = None
-    with suppress(RefusedError):  # the reason is in the report
-        domain = _domain(Scope(report))
+    try:
+        domain: PddlDomain | None = _domain(Scope(report))
+    except RefusedError:
+        domain = None  # the reason is in the report
     found = in_order(report.diagnostics)
     return (None if has_errors(found) else domain), found
 
@@ -76,9 +76,10 @@ def read_pddl_problem(
         {each.name: each for each in domain.predicates},
         set(domain.derived),
     )
-    problem = None
-    with suppress(RefusedError):  # the reason is in the report
-        problem = _problem(scope, domain)
+    try:
+        problem: PddlProblem | None = _problem(scope, domain)
+    except RefusedError:
+        problem = None  # the reason is in the report
     found = in_order(report.diagnostics)
     return (None if has_errors(found) else problem), found
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import NoReturn
 
 from icarus_lite.language.checking.report import Report
 from icarus_lite.language.pddl.nodes import Group, Node, Word
@@ -11,6 +10,10 @@ from icarus_lite.language.pddl.syntax import OBJECT, Predicate, Typed, ancestors
 from icarus_lite.language.syntax import Span
 from icarus_lite.language.wording import closest, listing
 from icarus_lite.records import dataclass, field, replace
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import NoReturn
 
 
 class RefusedError(Exception):

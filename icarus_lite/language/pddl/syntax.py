@@ -7,7 +7,6 @@ lower case; the type `object` is above all others.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import TypeAlias
 
 from icarus_lite.language.syntax import NOWHERE, Span
 from icarus_lite.records import dataclass, field
@@ -76,7 +75,7 @@ class Exists:
     span: Span = field(default=NOWHERE, compare=False)
 
 
-Formula: TypeAlias = Fact | Equal | Not | And | Or | Exists
+Formula = Fact | Equal | Not | And | Or | Exists
 
 
 @dataclass(frozen=True, slots=True)

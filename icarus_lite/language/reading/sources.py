@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import codecs
-from typing import TYPE_CHECKING
 
 from icarus_lite.language.diagnostics import Diagnostic, DomainError, Severity
 from icarus_lite.language.syntax import NOWHERE, Source, Span
 
+TYPE_CHECKING = False
 if TYPE_CHECKING:
     from pathlib import Path
 

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TypeAlias
 
 from icarus_lite.inference import ATTACHED
 from icarus_lite.language.syntax import Atom, Constant, Domain, SkillClause, Term, Variable
 from icarus_lite.records import dataclass
 from icarus_lite.symbols import Value
 
-Pair: TypeAlias = tuple[Value, Value]
+Pair = tuple[Value, Value]
 """Child and parent."""
 
 
@@ -30,7 +29,7 @@ class Detach:
     parent: Value | None
 
 
-HierarchyEvent: TypeAlias = Attach | Detach
+HierarchyEvent = Attach | Detach
 
 
 @dataclass(frozen=True, slots=True)

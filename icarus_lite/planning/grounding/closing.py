@@ -7,7 +7,6 @@ each is enough; only facts that rest on one another are looked at again until no
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Protocol, TypeAlias
 
 from icarus_lite.planning.ground_task import State
 from icarus_lite.planning.grounding.bits import Bits
@@ -15,20 +14,12 @@ from icarus_lite.planning.grounding.components import components
 from icarus_lite.planning.grounding.instances import Derivation, Literals, fact_of
 from icarus_lite.records import dataclass
 
-Ways: TypeAlias = tuple[tuple[tuple[State, State], ...], State]
+Ways = tuple[tuple[tuple[State, State], ...], State]
 """For a belief: each way to derive it with the bits to set then, and those to set if none holds.
 
 Where a belief has values of attributes, the ways to all of them in the order in which they
 compete: the first that holds decides.
 """
-
-
-class Layer(Protocol):
-    """Beliefs that rest on those of earlier layers."""
-
-    def derive(self, state: State) -> State:
-        """Give a state with these beliefs."""
-        ...
 
 
 class Closing:
@@ -133,9 +124,13 @@ class _Rounds:
         return state
 
 
+_Layer = _Straight | _Repeated | _Rounds
+"""Beliefs that rest on those of earlier layers; `derive` gives a state with them."""
+
+
 def _layers(
     problem: Literals, derivations: Mapping[int, Sequence[Derivation]], bits: Bits
-) -> list[Layer]:
+) -> list[_Layer]:
     belief = {head: min(problem.variants.get(head, (head,))) for head in derivations}
     valued = {
         problem.recursive[problem.atoms[head][0]]
@@ -154,7 +149,7 @@ def _layers(
         members.setdefault(leader[head], []).append(head)
         used = uses.setdefault(leader[head], [])
         used += [leader[n] for way in ways for x in way.conditions if (n := fact_of(x)) in leader]
-    layers, single = list[Layer](), list[Ways]()
+    layers, single = list[_Layer](), list[Ways]()
     for component in components(uses):
         alone = len(component) == 1 and component[0] not in uses[component[0]]
         in_rounds = any(first.get(group) in component for group in valued)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import TypeAlias
 
 from icarus_lite.planning.grounding.views import Attributes, Cells, Index, View
 from icarus_lite.symbols import Belief
@@ -14,7 +13,7 @@ GIVEN = "given "
 HELD = "held "
 """Before `attached` where concepts define that as well: the pair as the hierarchy has it."""
 
-_Inserter: TypeAlias = Callable[[int, Cells, Attributes], None]
+_Inserter = Callable[[int, Cells, Attributes], None]
 
 
 class FactBase:

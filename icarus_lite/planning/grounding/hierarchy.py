@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import TypeAlias
 
 from icarus_lite.planning.grounding.attaching import Attach, Detach
 from icarus_lite.planning.grounding.clauses import GroundedClause
@@ -11,7 +10,7 @@ from icarus_lite.planning.grounding.facts import FactBase
 from icarus_lite.planning.grounding.views import Cells
 from icarus_lite.symbols import Value
 
-NumberedEvent: TypeAlias = tuple[Attach | Detach, tuple[int, ...]]
+NumberedEvent = tuple[Attach | Detach, tuple[int, ...]]
 """An event with the facts it is about: the one it makes, or all that it may end."""
 
 

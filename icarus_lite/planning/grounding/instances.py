@@ -8,7 +8,6 @@ all these absences.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 from icarus_lite.inference.canonical import canonical
 from icarus_lite.language.syntax import Atom
@@ -17,6 +16,10 @@ from icarus_lite.planning.grounding.hierarchy import NumberedEvent
 from icarus_lite.planning.grounding.views import Attributes, Cells
 from icarus_lite.records import dataclass, field
 from icarus_lite.symbols import Value
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
 
 _MOST_ABSENCES = 4
 """Facts that a negated condition speaks of before a made-up fact stands for their absence."""

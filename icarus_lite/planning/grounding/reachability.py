@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import partial
-from typing import Any, TypeAlias
 
 from icarus_lite.errors import InferenceError
 from icarus_lite.inference import ATTACHED
@@ -19,7 +18,11 @@ from icarus_lite.planning.grounding.views import Attributes, Cells, Index, sorte
 from icarus_lite.records import dataclass
 from icarus_lite.symbols import Action, Value
 
-Found: TypeAlias = tuple[Cells, tuple[int, ...], tuple[int, ...]]
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+Found = tuple[Cells, tuple[int, ...], tuple[int, ...]]
 """An instance: what its variables are bound to, the facts that it rests on, those it makes true."""
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from operator import itemgetter
-from typing import Any
 
 from icarus_lite.inference import ATTACHED
 from icarus_lite.language.syntax import Atom, Constant, Term
@@ -13,6 +12,10 @@ from icarus_lite.planning.grounding.facts import GIVEN, FactBase
 from icarus_lite.planning.grounding.prepared import Prepared
 from icarus_lite.planning.grounding.views import Cells, Index, view_of
 from icarus_lite.records import dataclass
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
 
 
 @dataclass(frozen=True, slots=True)

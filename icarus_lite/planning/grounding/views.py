@@ -9,19 +9,22 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
 from operator import itemgetter
-from typing import Any, TypeAlias
 
 from icarus_lite.language.syntax import Atom, Constant, Term
 from icarus_lite.records import dataclass
 from icarus_lite.symbols import Value
 
-Cells: TypeAlias = tuple[Value, ...]
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any, TypeAlias
+
+Cells = tuple[Value, ...]
 """The arguments of a fact, or some of its cells."""
 
-Attributes: TypeAlias = tuple[tuple[str, Value], ...]
+Attributes = tuple[tuple[str, Value], ...]
 """The attributes of a fact, sorted by name."""
 
-Index: TypeAlias = dict[Any, list[Any]]
+Index: TypeAlias = "dict[Any, list[Any]]"
 """What is found under a key. Of a fact with a number: the number, or a tuple that begins with it
 and goes on with what the fact binds. Of a static fact: what it binds, bare where that is one."""
 

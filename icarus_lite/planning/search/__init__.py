@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from icarus_lite._on_use import imported_on_use
 
+TYPE_CHECKING = False
 if TYPE_CHECKING:
     from icarus_lite.planning.search.improvement import improve
     from icarus_lite.planning.search.result import Effort, Limits, Progress, SearchResult

@@ -194,6 +194,35 @@ def test_what_follows_init_is_called(library):
     assert called == [3]
 
 
+@every_way
+@pytest.mark.parametrize(
+    "do",
+    [
+        lambda kind: kind(1),
+        lambda kind: kind(1, 2.5, [3], "there"),
+        lambda kind: kind(y=4, x=1),
+        lambda kind: kind(1, where="there"),
+        lambda kind: kind(),
+        lambda kind: kind(y=1),
+        lambda kind: kind(1, x=1),
+        lambda kind: kind(1, 2, 3, 4, 5),
+        lambda kind: kind(1, seen={}),
+    ],
+)
+def test_the_hundredth_instance_is_made_like_the_first(options, do):
+    def shown(library):
+        return outcome(lambda made: repr(do(made)), kind if library is late else standard)
+
+    kind, standard = point(late, **options), point(dataclasses, **options)
+    assert {shown(late) for _ in range(100)} == {shown(dataclasses)}
+
+
+def test_what_is_made_anew_is_never_shared():
+    kind = point(late)
+    lists = [kind(1).near for _ in range(100)]
+    assert len({*map(id, lists)}) == 100
+
+
 def test_a_standard_data_class_may_inherit():
     base = point(late, frozen=True, slots=True)
 
@@ -249,7 +278,7 @@ def test_planning_starts_without_what_is_made_late():
     """It is what all this is for."""
     code = (
         "import sys, icarus_lite.planning.search, icarus_lite.language.pddl.importer;"
-        "print('dataclasses' in sys.modules, 'inspect' in sys.modules)"
+        "print({'dataclasses', 'inspect', 'importlib', 'json', 'typing'} & {*sys.modules})"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.split() == ["False", "False"]
+    assert done.stdout.strip() == "set()"
