@@ -16,6 +16,29 @@ HELD = "held "
 _Inserter = Callable[[int, Cells, Attributes], None]
 
 
+class Numbers(dict[object, int]):
+    """The numbers of a predicate's facts by their arguments, or by arguments and attributes.
+
+    Arguments that are looked up with `[...]` for the first time are noted: they get the next
+    number, and wait to be taken in.
+    """
+
+    __slots__ = ("_atoms", "_predicate", "_waiting")
+
+    def __init__(
+        self, predicate: str, atoms: list[tuple[str, Cells, Attributes]], waiting: list[int]
+    ) -> None:
+        super().__init__()
+        self._predicate, self._atoms, self._waiting = predicate, atoms, waiting
+
+    def __missing__(self, args: Cells) -> int:
+        """Note a fact without attributes."""
+        number = self[args] = len(self._atoms)
+        self._atoms.append((self._predicate, args, ()))
+        self._waiting.append(number)
+        return number
+
+
 class FactBase:
     """Facts, each with a number if its truth may change, in the indexes that joins look into.
 
@@ -27,7 +50,7 @@ class FactBase:
 
     def __init__(self) -> None:
         self.atoms: list[tuple[str, Cells, Attributes]] = []
-        self.numbers: dict[str, dict[object, int]] = {}
+        self.numbers: dict[str, Numbers] = {}
         self._waiting: dict[str, list[int]] = {}
         self._indexes: dict[View, Index] = {}
         self._feeds: dict[str, list[_Inserter]] = {}
@@ -44,33 +67,26 @@ class FactBase:
             self._feeds.setdefault(view.predicate, []).append(insert)
         return index
 
-    def numbers_of(self, predicate: str) -> dict[object, int]:
-        """Give the numbers of a predicate's facts by arguments, or arguments and attributes."""
-        return self.numbers.setdefault(predicate, {})
+    def numbers_of(self, predicate: str) -> Numbers:
+        """Give the numbers of a predicate's facts."""
+        numbers = self.numbers.get(predicate)
+        if numbers is None:
+            waiting = self._waiting.setdefault(predicate, [])
+            numbers = self.numbers[predicate] = Numbers(predicate, self.atoms, waiting)
+        return numbers
 
     def note(self, predicate: str, args: Cells, attributes: Attributes = ()) -> int:
         """Give the number of a fact; a new one waits to be taken in."""
         numbers = self.numbers_of(predicate)
-        key = (args, attributes) if attributes else args
+        if not attributes:
+            return numbers[args]
+        key = args, attributes
         number = numbers.get(key)
         if number is None:
             number = numbers[key] = len(self.atoms)
             self.atoms.append((predicate, args, attributes))
-            self._waiting.setdefault(predicate, []).append(number)
+            self._waiting[predicate].append(number)
         return number
-
-    def noted(self, predicate: str) -> Callable[[Cells], int]:
-        """Give a function that notes a fact without attributes which is known to be new."""
-        numbers, atoms = self.numbers_of(predicate), self.atoms
-        waiting = self._waiting.setdefault(predicate, [])
-
-        def note(args: Cells) -> int:
-            number = numbers[args] = len(atoms)
-            atoms.append((predicate, args, ()))
-            waiting.append(number)
-            return number
-
-        return note
 
     def take_in(self) -> tuple[str, list[int]] | None:
         """Let joins see what waits of one predicate; give it, or None if nothing waits."""

@@ -68,7 +68,7 @@ class PlanningDomain:
     def __init__(self, domain: Domain, evaluator: Evaluator | None = None) -> None:
         self.domain = domain
         self._evaluator = evaluator or Evaluator()
-        self._prepared: dict[tuple[Condition, ...], Prepared] = {}
+        self._prepared: dict[tuple[tuple[Condition, ...], bool], Prepared] = {}
         self._alone: PlanningDomain | None = None
 
     def alone(self) -> PlanningDomain:
@@ -80,18 +80,21 @@ class PlanningDomain:
             self._alone = PlanningDomain(replace(self.domain, skills=own), self._evaluator)
         return self._alone
 
-    def prepare(self, goals: Sequence[Condition], watched: Sequence[str] = ()) -> Prepared:
+    def prepare(
+        self, goals: Sequence[Condition], watched: Sequence[str] = (), *, banning: bool = False
+    ) -> Prepared:
         """Give the clauses that count for these goals, compiled.
 
         Args:
             goals: The conjunction to achieve.
             watched: Predicates whose facts are wanted beyond what the goals need.
+            banning: Whether some actions must not be used.
         """
         wanted = (*goals, *(Condition(Atom(name)) for name in watched))
-        prepared = self._prepared.get(wanted)
+        prepared = self._prepared.get((wanted, banning))
         if prepared is None:
-            prepared = _prepare(self.domain, tuple(goals), wanted, self._evaluator)
-            self._prepared[wanted] = prepared
+            prepared = _prepare(self.domain, tuple(goals), wanted, self._evaluator, banning=banning)
+            self._prepared[wanted, banning] = prepared
         return prepared
 
 
@@ -100,6 +103,8 @@ def _prepare(
     goals: tuple[Condition, ...],
     wanted: tuple[Condition, ...],
     evaluator: Evaluator,
+    *,
+    banning: bool,
 ) -> Prepared:
     skills = [clause for clause in relevance(domain, wanted).skills if _can_be_bound(clause)]
     attaching = {id(clause): Attaching(domain, clause) for clause in skills}
@@ -122,7 +127,7 @@ def _prepare(
     for number, clause in enumerate(counted):
         made = attaching.get(id(clause)) or None
         grounded.append(_ground_clause(number, clause, fluents, defined, made))
-    program = compile_program(grounded)
+    program = compile_program(grounded, banning=banning)
     recursive = recursive_concepts(concepts)
     closure = Closure((c for c in concepts if not c.head.predicate.startswith(GOAL)), evaluator)
     return Prepared(

@@ -85,8 +85,13 @@ class _Names:
         return self.constants.setdefault((type(value), value), f"value{len(self.constants)}")
 
 
-def compile_program(clauses: Sequence[GroundedClause]) -> Program:
-    """Write the functions that find the instances of these clauses, and compile them."""
+def compile_program(clauses: Sequence[GroundedClause], *, banning: bool = False) -> Program:
+    """Write the functions that find the instances of these clauses, and compile them.
+
+    Args:
+        clauses: The clauses.
+        banning: Whether the functions are to look for what is banned. Mostly nothing is.
+    """
     names, leads, parts = _Names(), [], list[str]()
     for clause in clauses:
         places: list[int | None] = [*sorted(clause.fluent)] or [None]
@@ -97,7 +102,7 @@ def compile_program(clauses: Sequence[GroundedClause]) -> Program:
                 view, terms, _ = view_of(clause.positive[place], (), serial=1)
                 key = tuple(term.value for term in terms if isinstance(term, Constant))
             leads.append(Lead(name, clause.number, view, key))
-            parts += _Function(clause, place, name, names).write()
+            parts += _Function(clause, place, name, names, banning=banning).write()
     source = "\n".join(parts)
     return Program(
         source,
@@ -114,8 +119,17 @@ def compile_program(clauses: Sequence[GroundedClause]) -> Program:
 class _Function:
     """The function of one clause that is led by one condition, or by none."""
 
-    def __init__(self, clause: GroundedClause, lead: int | None, name: str, names: _Names) -> None:
+    def __init__(
+        self,
+        clause: GroundedClause,
+        lead: int | None,
+        name: str,
+        names: _Names,
+        *,
+        banning: bool,
+    ) -> None:
         self._clause, self._lead, self._name, self._names = clause, lead, name, names
+        self._banning = banning
         self._bound: dict[str, str] = {}
         self._joined: set[int] = set()
         self._asked: set[int] = set()
@@ -222,32 +236,28 @@ class _Function:
             self._line(f"if {target} is None: continue")
             known = (*known, bind.variable.name)
         row = self._tuple(clause.variables)
-        if concept is None:
+        if concept is None and self._banning:
             head = ", ".join(self._term(term) for term in clause.clause.head.args)
             head += "," if len(clause.clause.head.args) == 1 else ""
-            self._line(f"if banned{number} and ({head}) in banned{number}: continue")
-        made = []
-        for place, atom in enumerate(clause.effects):
-            if is_bound(atom, self._bound):
-                made.append(self._note(place, atom))
-        effects = f"({''.join(f'{name}, ' for name in made)})"
+            self._line(f"if ({head}) in banned{number}: continue")
+        made = [
+            self._noted(place, atom)
+            for place, atom in enumerate(clause.effects)
+            if is_bound(atom, self._bound)
+        ]
+        effects = f"({''.join(f'{effect}, ' for effect in made)})"
         if clause.attaching is not None:
             effects = f"{effects} + attach{number}({row})"
         self._line(f"found{number}(({row}, {self._numbers()}, {effects}))")
 
-    def _note(self, place: int, atom: Atom) -> str:
-        """Write how an effect gets its number."""
+    def _noted(self, place: int, atom: Atom) -> str:
+        """Write what gives an effect its number."""
         args, attributes = cells_of(atom)
         cells = f"({''.join(f'{self._term(term)}, ' for term in args)})"
-        target, number = f"e{place}", self._clause.number
-        if attributes:
-            pairs = "".join(f"({name!r}, {self._term(term)}), " for name, term in attributes)
-            self._line(f"{target} = note{number}_{place}({cells}, ({pairs}))")
-            return target
-        self._line(f"c = {cells}")
-        self._line(f"{target} = numbers{number}_{place}.get(c)")
-        self._line(f"if {target} is None: {target} = note{number}_{place}(c)")
-        return target
+        if not attributes:
+            return f"numbers{self._clause.number}_{place}[{cells}]"
+        pairs = "".join(f"({name!r}, {self._term(term)}), " for name, term in attributes)
+        return f"note{self._clause.number}_{place}({cells}, ({pairs}))"
 
     # The small change of writing.
 

@@ -156,7 +156,6 @@ def _outlets(
             outlets[f"note{number}_{place}"] = partial(base.note, predicate)
         else:
             outlets[f"numbers{number}_{place}"] = base.numbers_of(predicate)
-            outlets[f"note{number}_{place}"] = base.noted(predicate)
     if clause.attaching is not None:
         attach = _attacher(clause.attaching, clause.variables, base, prepared.hierarchy)
         outlets[f"attach{number}"] = attach

@@ -95,7 +95,7 @@ def ground_goals(
     Raises:
         InferenceError: a test cannot be evaluated for what is believed now.
     """
-    prepared = domain.prepare(goals, watched or ())
+    prepared = domain.prepare(goals, watched or (), banning=bool(excluded))
     reached = reach(prepared, beginning, excluded)
     translation = Translation(prepared, reached)
     problem = translation.literals()
