@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 
 from icarus_lite.language.checking.report import Report
 from icarus_lite.language.reading.brackets import MAX_DEPTH
@@ -14,8 +13,14 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import TypeGuard
 
-_TOKEN = re.compile(r"[()]|[^\s();\"]+|;.*|(?P<alien>\")")
-_LEGAL = re.compile(r"[?:]?[A-Za-z][A-Za-z0-9_-]*|[A-Za-z0-9_.+-]+|[<>]=?|[=*/#-]", re.ASCII)
+_TOKEN = re.compile(
+    r"([?:]?[A-Za-z][A-Za-z0-9_-]*|[A-Za-z0-9_.+-]+|[<>]=?|[=*/#-])(?![^\s();\"])"
+    r"|(\()|(\))|(;.*)|([^\s();\"]+)|(\")"
+)
+"""The parts of a line. Which of its groups it is tells what stands there, as numbered below."""
+_WORD, _OPENING, _CLOSING, _COMMENT, _ILLEGAL, _ALIEN = range(1, 7)
+_SHOWN = 30
+"""How many characters of an illegal word are shown."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,74 +63,62 @@ def read_nodes(report: Report) -> tuple[Group, ...] | None:
         The lists at the top level; or None, with every unbalanced parenthesis and illegal
         character in the report.
     """
-    tokens: list[Word] = []
+    groups: list[Node] = []
+    inside, around = groups, list[tuple[int, int, list[Node]]]()
+    sound = True
     for number, line in enumerate(report.source.text.split("\n"), 1):
         for found in _TOKEN.finditer(line):
-            place = Span(number, found.start() + 1, number, found.end() + 1)
-            if found["alien"]:
-                report.error(place, "PDDL001", "this character has no place in PDDL", "remove it")
-                return None
-            if found[0][0] != ";":
-                tokens.append(Word(found[0], place))
-    if not all([_check_words(tokens, report), _check_brackets(tokens, report)]):
+            kind, (start, end) = found.lastindex, found.span()
+            if kind == _WORD:
+                span = Span(number, start + 1, number, end + 1)
+                inside.append(Word(found[0].lower(), span))
+            elif kind == _OPENING:
+                around.append((number, start + 1, inside))
+                inside = []
+                if len(around) == MAX_DEPTH + 1:
+                    _refuse(report, kind, "(", Span(number, start + 1, number, end + 1))
+                    sound = False
+            elif kind == _CLOSING and around:
+                first, column, outside = around.pop()
+                outside.append(Group(tuple(inside), Span(first, column, number, end + 1)))
+                inside = outside
+            elif kind != _COMMENT:
+                _refuse(report, kind, found[0], Span(number, start + 1, number, end + 1))
+                sound = False
+                if kind == _ALIEN:
+                    return None
+    if around:
+        (number, column, _), count = around[-1], len(around)
+        hint = f'{count} ")" {"is" if count == 1 else "are"} missing at the end of the file'
+        place = Span(number, column, number, column + 1)
+        report.error(place, "PDDL002", 'this "(" is never closed', hint)
         return None
-    return _groups(tokens, report)
+    return _only_groups(report, groups) if sound else None
 
 
-def _groups(tokens: Sequence[Word], report: Report) -> tuple[Group, ...] | None:
-    """Nest the tokens, whose parentheses are balanced."""
-    groups: list[Group] = []
-    opened: list[tuple[Span, list[Node]]] = []
-    for token in tokens:
-        if token.text == "(":
-            opened.append((token.span, []))
-        elif token.text == ")":
-            first, items = opened.pop()
-            span = Span(first.line, first.column, token.span.end_line, token.span.end_column)
-            inside = opened[-1][1] if opened else groups
-            inside.append(Group(tuple(items), span))
-        elif opened:
-            opened[-1][1].append(Word(token.text.lower(), token.span))
-        else:
-            place = Span(token.span.line, token.span.column, token.span.line, token.span.column + 1)
-            hint = "a PDDL file is one (define …)"
+def _only_groups(report: Report, nodes: list[Node]) -> tuple[Group, ...] | None:
+    """Refuse words at the top level."""
+    for each in nodes:
+        if isinstance(each, Word):
+            at, hint = each.span, "a PDDL file is one (define …)"
+            place = Span(at.line, at.column, at.line, at.column + 1)
             report.error(place, "PDDL006", "this word stands outside all parentheses", hint)
             return None
-    return tuple(groups)
+    return tuple([each for each in nodes if isinstance(each, Group)])
 
 
-def _check_words(tokens: Sequence[Word], report: Report) -> bool:
-    sound = True
-    for token in tokens:
-        if token.text not in ("(", ")") and not _LEGAL.fullmatch(token.text):
-            shown = token.text if len(token.text) <= 30 else f"{token.text[:29]}…"
-            message = f"`{shown}` is neither a name, a variable, a keyword nor a number of PDDL"
-            hint = "names are letters, digits, - and _, and begin with a letter"
-            report.error(token.span, "PDDL001", message, hint)
-            sound = False
-    return sound
-
-
-def _check_brackets(tokens: Sequence[Word], report: Report) -> bool:
-    opened: list[Word] = []
-    sound = True
-    for token in tokens:
-        if token.text == "(":
-            opened.append(token)
-            if len(opened) == MAX_DEPTH + 1:
-                message = f"parentheses are nested more than {MAX_DEPTH} deep"
-                report.error(token.span, "PDDL004", message, "split the expression")
-                sound = False
-        elif token.text == ")":
-            if opened:
-                opened.pop()
-                continue
-            hint = 'remove it, or look for a ")" too many before it'
-            report.error(token.span, "PDDL003", 'this ")" closes nothing', hint)
-            sound = False
-    if opened:
-        last, count = opened[-1], len(opened)
-        hint = f'{count} ")" {"is" if count == 1 else "are"} missing at the end of the file'
-        report.error(last.span, "PDDL002", 'this "(" is never closed', hint)
-        sound = False
-    return sound
+def _refuse(report: Report, kind: int | None, text: str, span: Span) -> None:
+    """Say what is wrong with a part of a line."""
+    if kind == _OPENING:
+        message = f"parentheses are nested more than {MAX_DEPTH} deep"
+        report.error(span, "PDDL004", message, "split the expression")
+    elif kind == _CLOSING:
+        hint = 'remove it, or look for a ")" too many before it'
+        report.error(span, "PDDL003", 'this ")" closes nothing', hint)
+    elif kind == _ALIEN:
+        report.error(span, "PDDL001", "this character has no place in PDDL", "remove it")
+    else:
+        shown = text if len(text) <= _SHOWN else f"{text[: _SHOWN - 1]}…"
+        message = f"`{shown}` is neither a name, a variable, a keyword nor a number of PDDL"
+        hint = "names are letters, digits, - and _, and begin with a letter"
+        report.error(span, "PDDL001", message, hint)
