@@ -29,6 +29,8 @@ def format_value(value: Value) -> str:
 
 
 def _reads_as_number(text: str) -> bool:
+    if text[0].isalpha() and text[0] not in "iInN":  # infinity and nan are numbers
+        return False
     try:
         float(text)
     except ValueError:

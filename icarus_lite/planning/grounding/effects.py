@@ -64,7 +64,9 @@ class Effects:
         """
         constant = self._problem.constant
         if self.simple:
-            adds = tuple([n for n in made if n not in constant])
+            adds = tuple(made)
+            if not constant.isdisjoint(adds):
+                adds = tuple([n for n in made if n not in constant])
             deletes = tuple([n for n in removed if n not in made and n not in constant])
             return Instance(self._clause, row, conditions, adds, deletes)
         instance = Instance(self._clause, row, conditions, (), ())

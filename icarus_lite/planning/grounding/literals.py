@@ -37,7 +37,7 @@ class Translation:
         )
         self._absences = Absences(self._result)
         self._removals: dict[int, Removals] = {}
-        self._removed: dict[int, list[list[int]]] = {}
+        self._removed: dict[int, list[Sequence[int]]] = {}
 
     def literals(self) -> Literals:
         """Give the problem."""
@@ -168,13 +168,15 @@ class Translation:
         denials = [lookup(self._base, atom, clause.variables) for atom in clause.denials]
         constant, instances = self._result.constant, self._result.instances
         found = self._reached.found[clause.number]
-        removed = self._removed.get(clause.number) or [[]] * len(found)
+        removed = self._removed.get(clause.number) or [()] * len(found)
         head = set(clause.clause.head.variables)
         others = not head.issuperset(clause.variables)
         places = [place for place, name in enumerate(clause.variables) if name in head]
         seen: set[tuple[object, ...]] = set()
         for (row, needed, made), ended in zip(found, removed, strict=True):
-            conditions = tuple([number for number in needed if number not in constant])
+            conditions = needed
+            if not constant.isdisjoint(needed):
+                conditions = tuple([number for number in needed if number not in constant])
             literals = self._with_denials(conditions, denials, row) if denials else conditions
             if literals is None:
                 continue

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from types import MemberDescriptorType
 
 from icarus_lite.planning.ground_task import GroundOperator, State
 from icarus_lite.planning.grounding.instances import Instance
@@ -32,12 +33,12 @@ class InstanceOperator(GroundOperator):
         possible: State,
         exception: Callable[[State, State], State] | None,
     ) -> None:
-        _set(self, "_instance", instance)
-        _set(self, "conditions", conditions)
-        _set(self, "add", add)
-        _set(self, "keep", keep)
-        _set(self, "possible", possible)
-        _set(self, "exception", exception)
+        _set_instance(self, instance)
+        _set_conditions(self, conditions)
+        _set_add(self, add)
+        _set_keep(self, keep)
+        _set_possible(self, possible)
+        _set_exception(self, exception)
 
     @property
     def step(self) -> PlanStep:
@@ -49,4 +50,15 @@ class InstanceOperator(GroundOperator):
         return step
 
 
-_set = object.__setattr__
+def _setter(kind: type, name: str) -> Callable[[object, object], None]:
+    """Give what sets an attribute around `__setattr__`, which refuses."""
+    descriptor: MemberDescriptorType = kind.__dict__[name]
+    return descriptor.__set__
+
+
+_set_instance = _setter(InstanceOperator, "_instance")
+_set_conditions = _setter(GroundOperator, "conditions")
+_set_add = _setter(GroundOperator, "add")
+_set_keep = _setter(GroundOperator, "keep")
+_set_possible = _setter(GroundOperator, "possible")
+_set_exception = _setter(GroundOperator, "exception")

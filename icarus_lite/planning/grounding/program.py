@@ -15,7 +15,7 @@ from types import CodeType
 from icarus_lite.inference.matching import variables_of
 from icarus_lite.language.syntax import Atom, Call, ConceptClause, Constant, Term, Variable
 from icarus_lite.planning.grounding.clauses import GroundedClause, cells_of, is_bound
-from icarus_lite.planning.grounding.views import View, view_of
+from icarus_lite.planning.grounding.views import View, terms_of, view_of
 from icarus_lite.records import dataclass, field
 from icarus_lite.symbols import Value
 
@@ -163,11 +163,12 @@ class _Function:
 
     def _urgency(self, place: int) -> tuple[int, int, int]:
         """Rank a condition: the least comes next in the join."""
-        atom, fluent = self._clause.positive[place], place in self._clause.fluent
-        _, key, fresh = view_of(atom, self._bound)
+        terms, fluent = terms_of(self._clause.positive[place]), place in self._clause.fluent
+        fresh = {t.name for t in terms if isinstance(t, Variable) and t.name not in self._bound}
         if not fresh:
             return fluent, 0, place
-        return 2 + 2 * (not key) + fluent, len(fresh), place
+        is_looked_up = any(isinstance(t, Constant) or t.name in self._bound for t in terms)
+        return 2 + 2 * (not is_looked_up) + fluent, len(fresh), place
 
     def _join(self, place: int) -> None:
         atom = self._clause.positive[place]

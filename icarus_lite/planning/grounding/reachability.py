@@ -90,9 +90,10 @@ def _begin(
     }
     perceived = {(fact.predicate, fact.args) for fact in beginning.percepts}
     asserted = set()
-    for belief in sorted(beginning.asserted, key=str):
+    changing = [each for each in beginning.asserted if each.predicate in prepared.fluents]
+    for belief in sorted(changing, key=str):
         predicate = belief.predicate
-        if predicate not in prepared.fluents or (predicate, belief.args) in perceived:
+        if (predicate, belief.args) in perceived:
             continue
         name = GIVEN + predicate if predicate in prepared.concepts else predicate
         asserted.add(base.note(name, belief.args, sorted_attributes(belief.attributes)))

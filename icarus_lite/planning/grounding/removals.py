@@ -68,8 +68,10 @@ class Removals:
         """Whether it ends what concepts may derive."""
         return bool(self._derived)
 
-    def of(self, row: Cells) -> list[int]:
+    def of(self, row: Cells) -> Sequence[int]:
         """Give the asserted facts that an instance ends."""
+        if len(self._given) == 1:
+            return self._given[0].of(row)
         return [number for each in self._given for number in each.of(row)]
 
     def derived(self, row: Cells) -> list[int]:

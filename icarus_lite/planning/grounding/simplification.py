@@ -109,7 +109,12 @@ def left_of(
 
 def _possible(problem: Literals, impossible: set[int]) -> Iterable[Instance]:
     constant = problem.constant
+    settled = constant | impossible
+    settled.update([~number for number in settled])
     for each in problem.instances:
+        if settled.isdisjoint(each.conditions):
+            yield each
+            continue
         conditions = left_of(each.conditions, constant, impossible)
         if conditions is not None:
             each.conditions = conditions
@@ -176,8 +181,16 @@ def _chain_back(
         for place in makers.of(literal):
             if place not in kept:
                 kept.add(place)
-                need(instances[place].conditions)
-                need(belief for belief, _ in instances[place].ended)
-                if instances[place].hierarchy:  # whether it attaches depends on all attachments
-                    need(each for link in problem.hierarchy for each in (link, ~link))
+                instance = instances[place]
+                need(instance.conditions)
+                if instance.depends_on_state:
+                    need(_decisive(problem, instance))
     return kept, needed
+
+
+def _decisive(problem: Literals, instance: Instance) -> Iterable[int]:
+    """Give the literals on which the effects of an instance depend."""
+    yield from (belief for belief, _ in instance.ended)
+    if instance.hierarchy:  # whether it attaches depends on all attachments
+        for link in problem.hierarchy:
+            yield from (link, ~link)

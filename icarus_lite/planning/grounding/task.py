@@ -173,8 +173,9 @@ def _operators(
         for number in each.deletes:
             gone |= masks.get(number, 0)
             add |= masks.get(~number, 0)
-        special = special_effects(each, bits, links, closing, beliefs)
-        possible = add
+        special, possible = None, add
+        if each.depends_on_state:
+            special = special_effects(each, bits, links, closing, beliefs)
         if special is not None:
             possible |= bits.mask(each.expected)
             possible |= bits.opposite(undenied for _, undenied in each.ended)
