@@ -86,40 +86,52 @@ def replace(instance: _T, /, **changes: Any) -> _T:
     return made
 
 
-class _Late:
-    """An attribute of a class that is made when it is first asked for."""
+class _Standard:
+    """An attribute of a class as the standard library would have made it, once somebody asks."""
 
-    __slots__ = ("_make", "_name", "_owner")
+    __slots__ = ("_name",)
 
-    def __init__(self, make: Callable[[Any], Any]) -> None:
-        self._make = make
-
-    def __set_name__(self, owner: Any, name: str) -> None:
-        self._owner, self._name = owner, name
+    def __init__(self, name: str) -> None:
+        self._name = name
 
     def __get__(self, instance: Any, owner: Any = None) -> Any:
-        made = self._make(self._owner)
-        setattr(self._owner, self._name, made)
-        return made if instance is None or not callable(made) else made.__get__(instance, owner)
+        import dataclasses  # noqa: PLC0415 - costs more than all of this
 
+        cls = next(each for each in owner.__mro__ if "__late_options__" in each.__dict__)
+        frozen, eq = cls.__late_options__
+        members: dict[str, Any] = {"__annotations__": {}, "__module__": cls.__module__}
+        for name, each in cls.__late_fields__.items():
+            members["__annotations__"][name] = each.annotation
+            members[name] = dataclasses.field(**each.options)
+        standard: Any = dataclasses.dataclass(frozen=frozen, eq=eq)(type(cls.__name__, (), members))
+        made = getattr(standard, self._name)
+        setattr(cls, self._name, made)
+        return made
+
+
+_FIELDS, _PARAMS = _Standard("__dataclass_fields__"), _Standard("__dataclass_params__")
 
 _UNCOMPILED = 32
 """How many instances of a class are made before its `__init__` is compiled."""
 
 
-class _LateInit(_Late):
+class _LateInit:
     """An `__init__` that is compiled when many instances are made, or somebody looks at it."""
 
-    __slots__ = ("_frozen", "_left", "_uncompiled")
+    __slots__ = ("_frozen", "_left", "_owner", "_uncompiled")
 
     def __init__(self, *, frozen: bool) -> None:
-        super().__init__(init_of_frozen if frozen else init_of)
         self._frozen, self._left = frozen, _UNCOMPILED
         self._uncompiled: Callable[..., None] | None = None
 
+    def __set_name__(self, owner: Any, name: str) -> None:
+        self._owner = owner
+
     def __get__(self, instance: Any, owner: Any = None) -> Any:
         if instance is None or not self._left:
-            return super().__get__(instance, owner)
+            compiled = init_of_frozen(self._owner) if self._frozen else init_of(self._owner)
+            self._owner.__init__ = compiled
+            return compiled if instance is None else MethodType(compiled, instance)
         self._left -= 1
         if self._uncompiled is None:
             self._uncompiled = uncompiled_init(self._owner, frozen=self._frozen)
@@ -139,7 +151,7 @@ def _made(cls: Any, frozen: bool, slots: bool, eq: bool) -> Any:  # noqa: FBT001
         made = cls
         for name, each in added.items():
             setattr(cls, name, each)
-            if isinstance(each, _Late):
+            if isinstance(each, _LateInit):
                 each.__set_name__(cls, name)
     if frozen:
         _freeze(made, frozenset(fields))
@@ -153,7 +165,7 @@ def _added(
     own = cls.__dict__
     methods: dict[str, Any] = {
         "__init__": _LateInit(frozen=frozen),
-        "__repr__": _representation([name for name, each in fields.items() if each.repr]),
+        "__repr__": _representation,
     }
     if eq:
         methods["__eq__"] = _equality(key := _key(fields))
@@ -162,26 +174,26 @@ def _added(
             methods["__hash__"] = _hash(key) if frozen else None
     if frozen and slots:
         methods["__getstate__"], methods["__setstate__"] = _state_of, _set_state
-    return {
-        **{
-            name: method
-            for name, method in methods.items()
-            if name not in own or (name == "__hash__" and "__eq__" in own)
-        },
-        "__late_fields__": fields,
-        "__match_args__": tuple([name for name, each in fields.items() if each.init]),
-        "__dataclass_fields__": _Late(_standard("__dataclass_fields__", frozen, eq)),
-        "__dataclass_params__": _Late(_standard("__dataclass_params__", frozen, eq)),
+    added = {
+        name: method
+        for name, method in methods.items()
+        if name not in own or (name == "__hash__" and "__eq__" in own)
     }
+    added["__late_fields__"] = fields
+    added["__late_options__"] = (frozen, eq)
+    added["__match_args__"] = tuple([name for name, each in fields.items() if each.init])
+    added["__dataclass_fields__"], added["__dataclass_params__"] = _FIELDS, _PARAMS
+    return added
 
 
 def _with_slots(cls: Any, own: Iterable[str], added: Mapping[str, Any]) -> Any:
     """Make a class anew, for slots cannot be added to one."""
     left_out = {*own, "__dict__", "__weakref__"}
     members = {name: each for name, each in cls.__dict__.items() if name not in left_out}
-    inherited = {slot for base in cls.__mro__[1:] for slot in _slots(base)}
+    inherited = {slot for base in cls.__mro__[1:-1] for slot in _slots(base)}
     members["__slots__"] = tuple([n for n in added["__late_fields__"] if n not in inherited])
-    made = type(cls)(cls.__name__, cls.__bases__, {**members, **added})
+    members.update(added)
+    made = type(cls)(cls.__name__, cls.__bases__, members)
     made.__qualname__ = cls.__qualname__
     return made
 
@@ -259,13 +271,11 @@ def _hash(key: Callable[[Any], tuple[Any, ...]]) -> Callable[[Any], int]:
     return __hash__
 
 
-def _representation(names: list[str]) -> Callable[[Any], str]:
-    @recursive_repr("...")
-    def __repr__(self: Any) -> str:  # noqa: N807 - becomes a method
-        shown = ", ".join([f"{name}={getattr(self, name)!r}" for name in names])
-        return f"{self.__class__.__qualname__}({shown})"
-
-    return __repr__
+@recursive_repr("...")
+def _representation(self: Any) -> str:
+    names = [name for name, each in self.__late_fields__.items() if each.repr]
+    shown = ", ".join([f"{name}={getattr(self, name)!r}" for name in names])
+    return f"{self.__class__.__qualname__}({shown})"
 
 
 def _state_of(self: Any) -> list[Any]:
@@ -275,19 +285,3 @@ def _state_of(self: Any) -> list[Any]:
 def _set_state(self: Any, state: list[Any]) -> None:
     for name, value in zip(self.__late_fields__, state, strict=True):
         object.__setattr__(self, name, value)
-
-
-def _standard(attribute: str, frozen: bool, eq: bool) -> Callable[[Any], Any]:  # noqa: FBT001 - as they came
-    """Give what makes an attribute of a class as the standard library would have made it."""
-
-    def made(cls: Any) -> Any:
-        import dataclasses  # noqa: PLC0415 - costs more than all of this
-
-        members: dict[str, Any] = {"__annotations__": {}, "__module__": cls.__module__}
-        for name, each in cls.__late_fields__.items():
-            members["__annotations__"][name] = each.annotation
-            members[name] = dataclasses.field(**each.options)
-        standard: Any = dataclasses.dataclass(frozen=frozen, eq=eq)(type(cls.__name__, (), members))
-        return getattr(standard, attribute)
-
-    return made
