@@ -36,9 +36,11 @@ class Relaxation:
     all its conditions together (h_add); the plan takes, backwards from the goal, the cheapest
     operator for each atom that is needed, once (h_FF). Rules cost nothing.
 
-    For each operator one number is kept: its cost so far, plus `_UNMET` for each condition that
-    is not met. What the state itself meets is kept from call to call and only corrected where
-    the next state differs, so the operators that can start come for nothing.
+    Operators that start under the same conditions, such as turning from one direction to any
+    other, are one *way* here: what they cost is the same until one of them is taken. Each rule is
+    a way as well. For each way one number is kept: its cost so far, plus `_UNMET` for each
+    condition that is not met. What the state itself meets is kept from call to call and only
+    corrected where the next state differs, so the operators that can start come for nothing.
 
     Source: Bonet and Geffner, Planning as heuristic search, 2001; Hoffmann and Nebel, The FF
     planning system, 2001; Keyder and Geffner, Heuristics for planning with action costs
@@ -51,31 +53,47 @@ class Relaxation:
         "_cap",
         "_conditions",
         "_cost",
-        "_operators",
+        "_makers",
+        "_members",
         "_pending",
         "_readers",
         "_state",
         "_supporter",
+        "_task",
+        "_way",
     )
 
     def __init__(self, task: GroundTask) -> None:
-        self._operators = len(task.operators)
-        self._conditions = [op.conditions for op in task.operators]
-        self._conditions += [rule.conditions for rule in task.rules]
-        self._adds = [bits(op.possible) for op in task.operators]
-        self._adds += [[rule.atom] for rule in task.rules]
+        self._task = task
+        alike: dict[tuple[int, ...], list[int]] = {}
+        for number, operator in enumerate(task.operators):
+            alike.setdefault(operator.conditions, []).append(number)
+        self._members = [*alike.values()]
+        self._way = [0] * len(task.operators)
+        self._makers: list[dict[int, int]] = []
+        for way, members in enumerate(self._members):
+            makers: dict[int, int] = {}
+            for number in members:
+                self._way[number] = way
+                for atom in bits(task.operators[number].possible):
+                    makers.setdefault(atom, number)
+            self._makers.append(makers)
+        for number, rule in enumerate(task.rules, len(task.operators)):
+            self._makers.append({rule.atom: number})
+        self._adds = [[*makers] for makers in self._makers]
+        self._conditions = [*alike, *(rule.conditions for rule in task.rules)]
         self._readers: list[list[int]] = [[] for _ in task.atoms]
-        for number, conditions in enumerate(self._conditions):
+        for way, conditions in enumerate(self._conditions):
             for atom in conditions:
-                self._readers[atom].append(number)
+                self._readers[atom].append(way)
         self._cap = _UNMET // (2 + max(map(len, self._conditions), default=0))
         self._state: State = 0
         self._cost = [FAR] * len(task.atoms)
         self._pending = [
-            len(conditions) * _UNMET + (number < self._operators)
-            for number, conditions in enumerate(self._conditions)
+            len(conditions) * _UNMET + (way < len(alike))
+            for way, conditions in enumerate(self._conditions)
         ]
-        self._applicable = {n for n, waiting in enumerate(self._pending) if waiting < _UNMET}
+        self._applicable = {way for way, waiting in enumerate(self._pending) if waiting < _UNMET}
         self._supporter = [0] * len(task.atoms)
 
     def estimate(self, state: State, goal: tuple[int, ...]) -> Estimate | None:
@@ -87,11 +105,14 @@ class Relaxation:
         cost = self._propagate(start, goal)
         if any(cost[atom] == FAR for atom in goal):
             return None
-        plan = self._plan(cost, goal)
-        pending, operators = self._pending, self._operators
-        steps = sorted(number for number in plan if number < operators)
-        preferred = [number for number in steps if pending[number] < _UNMET]
-        return Estimate(len(steps), preferred, start[: bisect_left(start, operators)])
+        steps = self._plan(cost, goal)
+        pending, way, members = self._pending, self._way, self._members
+        preferred = [number for number in steps if pending[way[number]] < _UNMET]
+        applicable = []
+        for each in start[: bisect_left(start, len(members))]:
+            applicable += members[each]
+        applicable.sort()
+        return Estimate(len(steps), preferred, applicable)
 
     def costs(self, state: State) -> list[int]:
         """Give what each atom costs from a state (h_add); `FAR` for what nothing reaches."""
@@ -103,9 +124,11 @@ class Relaxation:
         Rules are numbered after the operators.
         """
         means: list[list[int]] = [[] for _ in self._cost]
-        for number, atoms in enumerate(self._adds):
-            for atom in atoms:
+        for number, operator in enumerate(self._task.operators):
+            for atom in bits(operator.possible):
                 means[atom].append(number)
+        for number, rule in enumerate(self._task.rules, len(self._task.operators)):
+            means[rule.atom].append(number)
         return means
 
     def unreachable(self, state: State, goal: tuple[int, ...]) -> tuple[int, ...]:
@@ -114,22 +137,22 @@ class Relaxation:
         return tuple(atom for atom in goal if cost[atom] == FAR)
 
     def _move(self, state: State) -> list[int]:
-        """Take a state for the present one; give what can start in it, rules last."""
+        """Take a state for the present one; give the ways that can start in it, rules last."""
         pending, cost, applicable = self._pending, self._cost, self._applicable
         changed = self._state ^ state
         self._state = state
         for atom in bits(changed & ~state):
             cost[atom] = FAR
-            for number in self._readers[atom]:
-                if pending[number] < _UNMET:
-                    applicable.discard(number)
-                pending[number] += _UNMET
+            for way in self._readers[atom]:
+                if pending[way] < _UNMET:
+                    applicable.discard(way)
+                pending[way] += _UNMET
         for atom in bits(changed & state):
             cost[atom] = 0
-            for number in self._readers[atom]:
-                pending[number] -= _UNMET
-                if pending[number] < _UNMET:
-                    applicable.add(number)
+            for way in self._readers[atom]:
+                pending[way] -= _UNMET
+                if pending[way] < _UNMET:
+                    applicable.add(way)
         return sorted(applicable)
 
     def _propagate(  # noqa: C901, PLR0912 - one loop, in which a call would cost as much as its work
@@ -142,12 +165,12 @@ class Relaxation:
         if not missing:
             return cost
         found: dict[int, list[int]] = {}
-        for number in start:
-            total = waiting[number]
-            for atom in adds[number]:
+        for way in start:
+            total = waiting[way]
+            for atom in adds[way]:
                 if total < cost[atom]:
                     cost[atom] = total
-                    supporter[atom] = number
+                    supporter[atom] = way
                     if total in found:
                         found[total].append(atom)
                     else:
@@ -163,15 +186,15 @@ class Relaxation:
                     missing.discard(atom)
                     if not missing:
                         return cost
-                for number in readers[atom]:
-                    waiting[number] = total = waiting[number] + change
+                for way in readers[atom]:
+                    waiting[way] = total = waiting[way] + change
                     if total < _UNMET:
                         if total > cap:  # noqa: PLR1730 - `min` takes as long as all the rest
                             total = cap
-                        for added in adds[number]:
+                        for added in adds[way]:
                             if total < cost[added]:
                                 cost[added] = total
-                                supporter[added] = number
+                                supporter[added] = way
                                 if total in found:
                                     found[total].append(added)
                                 else:
@@ -179,17 +202,20 @@ class Relaxation:
                                     heappush(costs, total)
         return cost
 
-    def _plan(self, cost: list[int], goal: tuple[int, ...]) -> set[int]:
-        """Collect the cheapest operators, and rules, for the goal and for each other."""
-        conditions, supporter = self._conditions, self._supporter
+    def _plan(self, cost: list[int], goal: tuple[int, ...]) -> list[int]:
+        """Collect the cheapest operators for the goal and for each other, lowest number first."""
+        conditions, supporter, makers = self._conditions, self._supporter, self._makers
         plan: set[int] = set()
         needed = [atom for atom in goal if cost[atom]]
         while needed:
-            number = supporter[needed.pop()]
+            atom = needed.pop()
+            way = supporter[atom]
+            number = makers[way][atom]
             if number not in plan:
                 plan.add(number)
-                needed += [atom for atom in conditions[number] if cost[atom]]
-        return plan
+                needed += [atom for atom in conditions[way] if cost[atom]]
+        operators = len(self._way)
+        return sorted([number for number in plan if number < operators])
 
 
 def bits(mask: int) -> list[int]:
