@@ -6,7 +6,6 @@ from collections.abc import Iterable, Sequence
 
 from icarus_lite.inference import (
     ATTACHED,
-    Closure,
     Evaluator,
     FactStore,
     Hierarchy,
@@ -66,6 +65,8 @@ def given_beginning(domain: Domain, init: Iterable[Atom]) -> Beginning:
     for pair in given.hierarchy.pairs():
         facts.add(Belief(ATTACHED, pair))
     if domain.concepts:
+        from icarus_lite.inference import Closure  # noqa: PLC0415 - else it is not needed
+
         Closure(domain.concepts, evaluator).derive(facts)
     return Beginning(percepts, frozenset(given.asserted), given.hierarchy, facts, evaluator)
 

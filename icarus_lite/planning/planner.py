@@ -78,7 +78,7 @@ def find_plan(
         )
         return replace(none, account=solution.account)
     steps = tuple(grounding.task.operators[number].step for number in solution.plan)
-    focus = Focus(imagination, domain, grounding.closure, grounding.fluents)
+    focus = Focus(imagination, domain, grounding.closure(), grounding.fluents)
     flaw = focus.bears_out(steps, goals)
     if flaw:  # never seen; but an arm is not moved on a plan that imagination does not bear out
         reason = f"the plan that was found does not work: {flaw}"

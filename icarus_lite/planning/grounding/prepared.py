@@ -7,10 +7,10 @@ in one domain keeps.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cache, partial
 
-from icarus_lite.inference import ATTACHED, Closure, Evaluator
-from icarus_lite.language.checking.stratification import recursive_concepts, strata
+from icarus_lite.inference import ATTACHED, Evaluator
 from icarus_lite.language.syntax import (
     Atom,
     ConceptClause,
@@ -24,6 +24,10 @@ from icarus_lite.planning.grounding.facts import GIVEN, HELD
 from icarus_lite.planning.grounding.program import Program, compile_program
 from icarus_lite.planning.relevance import relevance
 from icarus_lite.records import dataclass, replace
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from icarus_lite.inference import Closure
 
 GOAL = "goal "
 """Begins the name of a made-up concept that stands for goals with variables."""
@@ -42,7 +46,7 @@ class Prepared:
         recursive: Those of these that are used in their own definition, those alike that are
             defined by one another.
         goals: The goals; those that variables connect as one made-up literal.
-        closure: Derives the concepts, for whoever imagines what plans lead to.
+        closure: Gives what derives the concepts, for whoever imagines what plans lead to.
     """
 
     clauses: tuple[GroundedClause, ...]
@@ -52,7 +56,7 @@ class Prepared:
     hierarchy: str
     recursive: Mapping[str, int]
     goals: tuple[Condition, ...]
-    closure: Closure
+    closure: Callable[[], Closure]
 
 
 class PlanningDomain:
@@ -128,23 +132,34 @@ def _prepare(
         made = attaching.get(id(clause)) or None
         grounded.append(_ground_clause(number, clause, fluents, defined, made))
     program = compile_program(grounded, banning=banning)
-    recursive = recursive_concepts(concepts)
-    closure = Closure((c for c in concepts if not c.head.predicate.startswith(GOAL)), evaluator)
+    derived = tuple(each for each in concepts if not each.head.predicate.startswith(GOAL))
     return Prepared(
         tuple(grounded),
         program,
         frozenset(fluents),
         frozenset(defined),
         hierarchy,
-        {
-            name: number
-            for number, group in enumerate(strata(concepts))
-            for name in group
-            if name in recursive
-        },
+        _recursive(concepts),
         stood_for,
-        closure,
+        cache(partial(_closure, derived, evaluator)),
     )
+
+
+def _recursive(concepts: Sequence[ConceptClause]) -> Mapping[str, int]:
+    """Give the concepts that depend on themselves, those that do so together a number."""
+    if not concepts:
+        return {}
+    from icarus_lite.language.checking import stratification  # noqa: PLC0415 - else not needed
+
+    recursive = stratification.recursive_concepts(concepts)
+    groups = enumerate(stratification.strata(concepts))
+    return {name: number for number, group in groups for name in group if name in recursive}
+
+
+def _closure(concepts: Sequence[ConceptClause], evaluator: Evaluator) -> Closure:
+    from icarus_lite.inference import Closure  # noqa: PLC0415 - most plans need no imagination
+
+    return Closure(concepts, evaluator)
 
 
 def _can_be_bound(clause: SkillClause) -> bool:

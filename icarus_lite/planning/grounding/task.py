@@ -2,25 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 
-from icarus_lite.inference import Closure
 from icarus_lite.language.syntax import Condition, Domain
 from icarus_lite.planning.beginning import Beginning
 from icarus_lite.planning.ground_task import GroundTask
 from icarus_lite.planning.grounding.bits import Bits, assign_bits
-from icarus_lite.planning.grounding.closing import Closing
 from icarus_lite.planning.grounding.facts import GIVEN, HELD
-from icarus_lite.planning.grounding.instances import Instance, Literals
+from icarus_lite.planning.grounding.instances import Derivation, Instance, Literals
 from icarus_lite.planning.grounding.literals import Translation
 from icarus_lite.planning.grounding.operators import InstanceOperator
 from icarus_lite.planning.grounding.prepared import PlanningDomain
 from icarus_lite.planning.grounding.reachability import Reached, reach
 from icarus_lite.planning.grounding.rules import rules_of
 from icarus_lite.planning.grounding.simplification import Simplified, left_of, simplify
-from icarus_lite.planning.grounding.special_effects import links_of, special_effects
 from icarus_lite.records import dataclass
 from icarus_lite.symbols import Action, Belief
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from icarus_lite.inference import Closure
+    from icarus_lite.planning.grounding.closing import Closing
+    from icarus_lite.planning.grounding.special_effects import Special
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,14 +36,14 @@ class Grounding:
             undone.
         reached: All that could come to hold if nothing were ever undone.
         fluents: The predicates whose facts may change.
-        closure: Derives those of them that concepts define, as far as anybody asks for them.
+        closure: Gives what derives those of them that concepts define, as far as anybody asks.
     """
 
     task: GroundTask
     hopeless: tuple[Condition, ...]
     reached: Reached
     fluents: frozenset[str]
-    closure: Closure
+    closure: Callable[[], Closure]
 
     def could_hold(self) -> Iterator[Belief]:
         """Give the beliefs that could come about if nothing were ever undone."""
@@ -134,7 +137,7 @@ def _encode(problem: Literals, simplified: Simplified, goal: tuple[int, ...] | N
     ways = [way for found in simplified.derivations.values() for way in found]
     tracked = needed.union(*(way.conditions for way in ways))
     bits = assign_bits(problem, tracked, simplified.derivations)
-    closing = Closing(problem, simplified.derivations, bits) if simplified.derivations else None
+    closing = _closing(problem, simplified.derivations, bits)
     initial = 0
     for number in {n if n >= 0 else ~n for n in tracked}:
         initial |= bits.masks.get(number if number in problem.initial else ~number, 0)
@@ -161,11 +164,10 @@ def _never(bits: Bits) -> int:
 def _operators(
     problem: Literals, instances: Sequence[Instance], bits: Bits, closing: Closing | None
 ) -> tuple[InstanceOperator, ...]:
-    links = links_of(problem, bits)
-    beliefs = _beliefs(problem)
+    exceptions = _exceptions(problem, instances, bits, closing)
     every = (1 << len(bits.atoms)) - 1
     masks, places, operators = bits.masks, bits.places, []
-    for each in instances:
+    for place, each in enumerate(instances):
         add = gone = 0
         for number in each.adds:
             add |= masks.get(number, 0)
@@ -173,9 +175,7 @@ def _operators(
         for number in each.deletes:
             gone |= masks.get(number, 0)
             add |= masks.get(~number, 0)
-        special, possible = None, add
-        if each.depends_on_state:
-            special = special_effects(each, bits, links, closing, beliefs)
+        special, possible = exceptions.get(place), add
         if special is not None:
             possible |= bits.mask(each.expected)
             possible |= bits.opposite(undenied for _, undenied in each.ended)
@@ -184,6 +184,33 @@ def _operators(
         conditions = tuple([places[literal] for literal in each.conditions])
         operators.append(InstanceOperator(each, conditions, add, every & ~gone, possible, special))
     return tuple(operators)
+
+
+def _exceptions(
+    problem: Literals, instances: Sequence[Instance], bits: Bits, closing: Closing | None
+) -> dict[int, Special]:
+    """Give the effects that depend on the state, by the places of their instances."""
+    dependent = [place for place, each in enumerate(instances) if each.depends_on_state]
+    if not dependent:
+        return {}
+    from icarus_lite.planning.grounding import special_effects  # noqa: PLC0415 - else not needed
+
+    links, beliefs = special_effects.links_of(problem, bits), _beliefs(problem)
+    found = (
+        (place, special_effects.special_effects(instances[place], bits, links, closing, beliefs))
+        for place in dependent
+    )
+    return {place: special for place, special in found if special is not None}
+
+
+def _closing(
+    problem: Literals, derivations: dict[int, list[Derivation]], bits: Bits
+) -> Closing | None:
+    if not derivations:
+        return None
+    from icarus_lite.planning.grounding.closing import Closing  # noqa: PLC0415 - else not needed
+
+    return Closing(problem, derivations, bits)
 
 
 def _beliefs(problem: Literals) -> dict[int, Sequence[int]]:

@@ -31,7 +31,7 @@ def borne_out(goal: str, change: Sequence[int] | None) -> str:
     if change is not None:
         steps = [steps[number] for number in change]
     ground = ground_goals(PlanningDomain(domain), imagination.beginning, goals)
-    return Focus(imagination, domain, ground.closure, ground.fluents).bears_out(steps, goals)
+    return Focus(imagination, domain, ground.closure(), ground.fluents).bears_out(steps, goals)
 
 
 def test_a_plan_that_works_is_borne_out() -> None:
@@ -64,7 +64,7 @@ def test_it_agrees_with_the_whole_imagination() -> None:
             continue
         ground = ground_goals(PlanningDomain(domain), imagination.beginning, goals)
         for steps in (plan.steps, plan.steps[:-1], plan.steps[::-1]):
-            focus = Focus(imagination, domain, ground.closure, ground.fluents)
+            focus = Focus(imagination, domain, ground.closure(), ground.fluents)
             works = not focus.bears_out(steps, goals)
             assert works is (validate(imagination, steps, goals) is None), f"seed {seed}"
             agreed[works] += 1
