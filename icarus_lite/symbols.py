@@ -16,16 +16,22 @@ from icarus_lite.records import dataclass, field
 Value = str | int | float
 """What a variable may be bound to: a symbol (or string), an integer or a float."""
 
-_SYMBOL = re.compile(r"[^\s()\"';?:^*|#]+(?<![.])|\d+(\.\d+)+", re.ASCII)
+_SYMBOL = r"[^\s()\"';?:^*|#]+(?<![.])|\d+(\.\d+)+"
 
 
 def format_value(value: Value) -> str:
     """Write a value as a domain file would: symbols bare, strings quoted, numbers by `repr`."""
     if isinstance(value, str):
-        if _SYMBOL.fullmatch(value) and not _reads_as_number(value):
+        if _is_symbol(value) and not _reads_as_number(value):
             return value
         return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
     return repr(value)
+
+
+def _is_symbol(text: str) -> bool:
+    # Nearly all are letters, digits, - and _; the pattern costs as much as a module to compile.
+    is_plain = text.isascii() and text.replace("-", "_").isidentifier()
+    return is_plain or re.fullmatch(_SYMBOL, text, re.ASCII) is not None
 
 
 def _reads_as_number(text: str) -> bool:
