@@ -183,8 +183,8 @@ def measured(
 
 def compiled() -> dict[str, str]:
     """Give an environment in which modules are compiled once, as where they are installed."""
-    kept = {k: v for k, v in os.environ.items() if k != "PYTHONDONTWRITEBYTECODE"}
-    return {**kept, "PYTHONPYCACHEPREFIX": str(Path("build/planning-bytecode").resolve())}
+    elsewhere = ("PYTHONDONTWRITEBYTECODE", "PYTHONPYCACHEPREFIX")
+    return {name: value for name, value in os.environ.items() if name not in elsewhere}
 
 
 if __name__ == "__main__":

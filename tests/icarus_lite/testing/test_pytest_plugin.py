@@ -51,6 +51,7 @@ def test_it_imports_nothing_heavy_before_there_is_a_domain() -> None:
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.split() == [
         "icarus_lite",
+        "icarus_lite._on_use",
         "icarus_lite._version",
         "icarus_lite.testing",
         "icarus_lite.testing.pytest_plugin",
