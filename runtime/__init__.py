@@ -1,7 +1,6 @@
 """The body and the loop: drivers, the cell, the command line."""
 
-from typing import TYPE_CHECKING
-
+TYPE_CHECKING = False
 if TYPE_CHECKING:
     from runtime.cell import Cell
     from runtime.run import RunOptions, RunResult, run_task

@@ -148,11 +148,7 @@ def _made(cls: Any, frozen: bool, slots: bool, eq: bool) -> Any:  # noqa: FBT001
     if slots:
         made = _with_slots(cls, own, added)
     else:
-        made = cls
-        for name, each in added.items():
-            setattr(cls, name, each)
-            if isinstance(each, _LateInit):
-                each.__set_name__(cls, name)
+        made = _without_slots(cls, own, added)
     if frozen:
         _freeze(made, frozenset(fields))
     return made
@@ -198,6 +194,20 @@ def _with_slots(cls: Any, own: Iterable[str], added: Mapping[str, Any]) -> Any:
     return made
 
 
+def _without_slots(cls: Any, own: Mapping[str, Field], added: Mapping[str, Any]) -> Any:
+    """Add to a class; its instances find their defaults in it."""
+    for name, each in own.items():
+        if each.default is not MISSING:
+            setattr(cls, name, each.default)
+        elif isinstance(cls.__dict__.get(name), Field):
+            delattr(cls, name)
+    for name, method in added.items():
+        setattr(cls, name, method)
+        if isinstance(method, _LateInit):
+            method.__set_name__(cls, name)
+    return cls
+
+
 def _own_fields(cls: Any) -> dict[str, Field]:
     """Give the fields that a class adds, by name."""
     fields = {}
@@ -213,11 +223,6 @@ def _own_fields(cls: Any) -> dict[str, Field]:
             )
         each.annotation = annotation
         fields[name] = each
-    for name, each in fields.items():  # an instance without slots finds its default in the class
-        if each.default is not MISSING:
-            setattr(cls, name, each.default)
-        elif isinstance(cls.__dict__.get(name), Field):
-            delattr(cls, name)
     return fields
 
 

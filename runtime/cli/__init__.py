@@ -6,15 +6,16 @@ standard error. With `--json`, standard output carries one JSON document and not
 
 from __future__ import annotations
 
-import atexit
 import gc
 import sys
+from contextlib import suppress
 from typing import NoReturn
 
 import typer
 
 from icarus_lite import IcarusError
 from runtime.cli.app import BAD_INPUT, HOLDS, app
+from runtime.ending import Ending
 from runtime.errors import RuntimeFault
 
 _ALLOCATIONS = 50_000
@@ -24,8 +25,6 @@ the process, so that to look after each seven hundred, as is usual, is a tenth o
 
 def main() -> NoReturn:
     """Run the command line; whatever goes wrong is told in words, with status 2."""
-    gc.set_threshold(_ALLOCATIONS)
-    atexit.register(gc.freeze)  # as the process ends, nobody need look for garbage
     try:
         app()
     except (IcarusError, RuntimeFault) as error:
@@ -38,7 +37,21 @@ def main() -> NoReturn:
         # Whoever read our output has enough; there is nobody left to tell.
         sys.stderr.close()
         sys.exit(HOLDS)
+    except OSError as error:  # such as a disk that is full
+        _tell(f"{error.filename or 'standard output'}: {error.strerror or error}")
     sys.exit(HOLDS)
+
+
+def program() -> NoReturn:
+    """Run the command line as a process of its own, which then ends at once."""
+    ending = Ending()
+    gc.set_threshold(_ALLOCATIONS)
+    try:
+        main()
+    except SystemExit as ended:
+        if ended.code is None or isinstance(ended.code, int):
+            ending.status = ended.code or HOLDS
+        raise
 
 
 def _is_told_by_the_eyes(error: ValueError) -> bool:
@@ -50,10 +63,11 @@ def _is_told_by_the_eyes(error: ValueError) -> bool:
     return isinstance(error, AnchoringError)
 
 
-def _tell(error: Exception) -> NoReturn:
-    sys.stdout.flush()
+def _tell(error: Exception | str) -> NoReturn:
+    with suppress(OSError):
+        sys.stdout.flush()
     typer.echo(str(error), err=True)
     sys.exit(BAD_INPUT)
 
 
-__all__ = ["app", "main"]
+__all__ = ["app", "main", "program"]

@@ -1,5 +1,5 @@
 """`python -m runtime.cli` is `icarus`."""
 
-from runtime.cli import main
+from runtime.cli import program
 
-main()
+program()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import os
 import re
 import socket
 import subprocess
@@ -92,6 +93,23 @@ def write_frames(folder: Path, frames: list[object]) -> Path:
 def without_times(trace: Path) -> list[dict[str, object]]:
     rows = [json.loads(line) for line in trace.read_text().splitlines()]
     return [{key: value for key, value in row.items() if key != "timings"} for row in rows]
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="only Linux has a full device")
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+def test_a_full_disk_is_told_in_words(unbuffered: str) -> None:
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(
+            [sys.executable, "-m", "runtime.cli", "check", "domains/gearbox.icr"],
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+            timeout=60,
+            check=False,
+            env={**os.environ, "PYTHONUNBUFFERED": unbuffered},
+        )
+    assert done.returncode == 2
+    assert done.stderr == "standard output: No space left on device\n"
 
 
 def test_version() -> None:
