@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from icarus_lite.inference.contradictions import Doubt, Judgement, Withdrawal, carried_over
     from icarus_lite.inference.effects import Change, change_of
     from icarus_lite.inference.engine import BeliefState, InferenceEngine, Memory
+    from icarus_lite.inference.evaluator import Evaluator, Functions
     from icarus_lite.inference.explaining import (
         Chronicle,
         Context,
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
         with_values,
     )
     from icarus_lite.inference.given import GIVEN, GivenBeliefs, given_beliefs, given_percepts
-    from icarus_lite.inference.matching import Evaluator, Functions, Match, Matcher
+    from icarus_lite.inference.matching import Match, Matcher
     from icarus_lite.inference.near_miss import (
         NearMiss,
         Obstacle,
@@ -57,11 +58,11 @@ _HOMES = {
     "Context": "explaining",
     "Derivation": "supports",
     "Doubt": "contradictions",
-    "Evaluator": "matching",
+    "Evaluator": "evaluator",
     "Explanation": "explanation",
     "FactStore": "facts",
     "ForgottenError": "network",
-    "Functions": "matching",
+    "Functions": "evaluator",
     "GIVEN": "given",
     "GivenBeliefs": "given",
     "Hierarchy": "attachment",

@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterable
 from functools import partial
 
 from icarus_lite.inference.canonical import canonical
+from icarus_lite.inference.evaluator import Evaluator
 from icarus_lite.inference.facts import FactStore
-from icarus_lite.inference.matching import Evaluator
 from icarus_lite.inference.rules import Rule
 from icarus_lite.inference.supports import Support
 from icarus_lite.language.checking.stratification import recursive_concepts, strata

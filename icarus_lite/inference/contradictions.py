@@ -13,8 +13,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 from icarus_lite.inference.canonical import canonical
+from icarus_lite.inference.evaluator import Evaluator
 from icarus_lite.inference.facts import Bindings, FactStore, match
-from icarus_lite.inference.matching import Evaluator, Match
+from icarus_lite.inference.matching import Match
 from icarus_lite.inference.supports import Assertion, Literal, Support, bind_literal
 from icarus_lite.language.syntax import Contradiction
 from icarus_lite.records import dataclass

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from icarus_lite.inference.evaluator import Evaluator
 from icarus_lite.inference.facts import Bindings, FactStore, ground, match, unify
-from icarus_lite.inference.matching import Evaluator
 from icarus_lite.inference.supports import bind_pattern
 from icarus_lite.language.syntax import Atom, Condition, SkillClause
 from icarus_lite.records import dataclass

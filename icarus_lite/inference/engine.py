@@ -13,6 +13,7 @@ from icarus_lite.inference.causes import Causes
 from icarus_lite.inference.closure import Closure
 from icarus_lite.inference.contradictions import Doubt, Judgement, Withdrawal, judge
 from icarus_lite.inference.effects import Change, change_by_action
+from icarus_lite.inference.evaluator import Evaluator, Functions
 from icarus_lite.inference.facts import (
     FactStore,
     Lineages,
@@ -21,7 +22,6 @@ from icarus_lite.inference.facts import (
     percept_facts,
 )
 from icarus_lite.inference.lasting import Given, Lasting, hierarchy_of
-from icarus_lite.inference.matching import Evaluator, Functions
 from icarus_lite.inference.present import PresentFacts
 from icarus_lite.inference.supports import Assertion, Support
 from icarus_lite.language.checking.stratification import strata

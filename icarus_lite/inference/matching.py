@@ -2,53 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
+from icarus_lite.inference.evaluator import Evaluator
 from icarus_lite.inference.facts import Bindings, FactStore
 from icarus_lite.inference.join import Conjunction, Plan, compile_plan
 from icarus_lite.inference.views import row_getter
-from icarus_lite.language.functions import evaluate
-from icarus_lite.language.syntax import Atom, Call, Condition, Expression, Variable
-from icarus_lite.records import dataclass, field
+from icarus_lite.language.syntax import Atom, Call, Condition, variables_of
+from icarus_lite.records import dataclass
 from icarus_lite.symbols import Belief, Value
-
-Functions = Mapping[str, Callable[..., Value | bool]]
-"""Python predicates registered by name, beside the built-in functions of `:tests`."""
-
-
-_MATCHERS_KEPT = 512
-
-
-@dataclass(frozen=True, slots=True)
-class Evaluator:
-    """Evaluates the expressions of one domain.
-
-    Args:
-        functions: Python predicates registered by name. They must be pure.
-        path: The domain file, to name it in errors.
-    """
-
-    functions: Functions = field(default_factory=dict)
-    path: str = ""
-    _matchers: dict[tuple[object, ...], Matcher] = field(
-        default_factory=dict, init=False, repr=False, compare=False
-    )
-
-    def __call__(self, expression: Expression, bindings: Bindings) -> Value | bool:
-        """Give an expression's value. Raises InferenceError, with the place, if it has none."""
-        return evaluate(expression, bindings, self.functions, path=self.path)
-
-    def matcher(
-        self, conditions: Sequence[Condition], tests: Sequence[Call] = (), bound: Sequence[str] = ()
-    ) -> Matcher:
-        """Give a matcher; for what was asked for lately, the one that is compiled already."""
-        key = (*conditions, None, *tests, None, *bound)
-        found = self._matchers.get(key)
-        if found is None:
-            if len(self._matchers) >= _MATCHERS_KEPT:
-                self._matchers.clear()
-            found = self._matchers[key] = Matcher(conditions, tests, bound, self)
-        return found
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,12 +93,3 @@ def _in_turn(
         waiting = [test for test in waiting if test not in ready]
     turns[-1] += tuple(waiting)  # an unbound variable: evaluation says so, with place
     return tuple(turns)
-
-
-def variables_of(expression: Expression) -> Iterator[str]:
-    """Give the names of the variables of an expression, repeats included."""
-    if isinstance(expression, Variable):
-        yield expression.name
-    elif isinstance(expression, Call):
-        for argument in expression.args:
-            yield from variables_of(argument)

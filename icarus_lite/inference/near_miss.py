@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from icarus_lite.inference.evaluator import Evaluator
 from icarus_lite.inference.explaining.attempts import nearest_attempt
 from icarus_lite.inference.explaining.diagnosis import nearest_beliefs
 from icarus_lite.inference.explaining.fitting import fit
 from icarus_lite.inference.facts import Bindings, FactStore
-from icarus_lite.inference.matching import Evaluator
 from icarus_lite.inference.supports import Literal
 from icarus_lite.language.syntax import Atom, Call, ConceptClause, Condition, SkillClause
 from icarus_lite.records import dataclass

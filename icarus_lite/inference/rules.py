@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 
 from icarus_lite.errors import InferenceError
+from icarus_lite.inference.evaluator import Evaluator
 from icarus_lite.inference.expressions import compile_bind
 from icarus_lite.inference.facts import FactStore
 from icarus_lite.inference.join import Plan, Tick
-from icarus_lite.inference.matching import Evaluator, Matcher
+from icarus_lite.inference.matching import Matcher
 from icarus_lite.inference.supports import Derivation, bind_pattern
 from icarus_lite.inference.views import Entry, Row, row_getter
 from icarus_lite.language.syntax import Atom, ConceptClause, Constant, Variable

@@ -5,6 +5,7 @@ Spans never take part in comparison, so two trees are equal when they mean the s
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from enum import StrEnum
 
 from icarus_lite.records import dataclass, field
@@ -373,3 +374,12 @@ class Domain:
     agents: tuple[str, ...] = ()
     contradictions: tuple[Contradiction, ...] = ()
     source: Source = field(default=Source("<text>", ""), compare=False)
+
+
+def variables_of(expression: Expression) -> Iterator[str]:
+    """Give the names of the variables of an expression, repeats included."""
+    if isinstance(expression, Variable):
+        yield expression.name
+    elif isinstance(expression, Call):
+        for argument in expression.args:
+            yield from variables_of(argument)

@@ -145,10 +145,7 @@ def _made(cls: Any, frozen: bool, slots: bool, eq: bool) -> Any:  # noqa: FBT001
     own = _own_fields(cls)
     fields.update(own)
     added = _added(cls, fields, frozen=frozen, slots=slots, eq=eq)
-    if slots:
-        made = _with_slots(cls, own, added)
-    else:
-        made = _without_slots(cls, own, added)
+    made = (_with_slots if slots else _without_slots)(cls, own, added)
     if frozen:
         _freeze(made, frozenset(fields))
     return made

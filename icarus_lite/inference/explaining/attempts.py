@@ -16,6 +16,7 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Final, cast
 
 from icarus_lite.errors import InferenceError
+from icarus_lite.inference.evaluator import Evaluator
 from icarus_lite.inference.explaining.conjunctions import (
     Attempt,
     Checked,
@@ -28,10 +29,9 @@ from icarus_lite.inference.explaining.lookup import Facts, OpenRow, Pattern
 from icarus_lite.inference.explaining.margins import Margin, margin_of
 from icarus_lite.inference.expressions import Compiled, compile_test
 from icarus_lite.inference.facts import Bindings
-from icarus_lite.inference.matching import Evaluator, variables_of
 from icarus_lite.inference.supports import Literal, bind_literal
 from icarus_lite.inference.views import Row
-from icarus_lite.language.syntax import Call, Condition
+from icarus_lite.language.syntax import Call, Condition, variables_of
 from icarus_lite.records import dataclass
 from icarus_lite.symbols import Belief, Value
 

@@ -6,9 +6,8 @@ from collections.abc import Mapping, Sequence
 from enum import StrEnum
 
 from icarus_lite.inference.facts import Bindings
-from icarus_lite.inference.matching import variables_of
 from icarus_lite.inference.supports import Literal
-from icarus_lite.language.syntax import Call, Condition
+from icarus_lite.language.syntax import Call, Condition, variables_of
 from icarus_lite.records import dataclass
 from icarus_lite.symbols import Belief, Value
 

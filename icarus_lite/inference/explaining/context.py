@@ -7,9 +7,9 @@ from functools import cached_property
 
 from icarus_lite.inference.belief_supports import BeliefSupports
 from icarus_lite.inference.engine import BeliefState
+from icarus_lite.inference.evaluator import Evaluator
 from icarus_lite.inference.explaining.chronicle import Chronicle
 from icarus_lite.inference.facts import FactStore
-from icarus_lite.inference.matching import Evaluator
 from icarus_lite.inference.present import PresentFacts
 from icarus_lite.inference.supports import Support
 from icarus_lite.language.checking.vocabulary import Origin, Vocabulary, vocabulary

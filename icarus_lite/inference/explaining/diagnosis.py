@@ -7,6 +7,7 @@ from itertools import islice
 from typing import Final
 
 from icarus_lite.errors import InferenceError
+from icarus_lite.inference.evaluator import Evaluator
 from icarus_lite.inference.explaining.conjunctions import Checked, Standing
 from icarus_lite.inference.explaining.context import Context
 from icarus_lite.inference.explaining.lookup import Facts, matching
@@ -20,7 +21,6 @@ from icarus_lite.inference.explaining.reasons import (
     Unasked,
 )
 from icarus_lite.inference.facts import Bindings
-from icarus_lite.inference.matching import Evaluator
 from icarus_lite.language.syntax import Atom, Call, Constant, Term, Variable
 from icarus_lite.symbols import Belief, Value
 

@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping
 from typing import TypeAlias
 
 from icarus_lite.errors import InferenceError
+from icarus_lite.inference.evaluator import Evaluator
 from icarus_lite.inference.expressions import compile_expression
-from icarus_lite.inference.matching import Evaluator
 from icarus_lite.inference.views import Row
 from icarus_lite.language.syntax import Call
 

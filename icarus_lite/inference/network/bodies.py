@@ -14,7 +14,6 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Sequence
 
-from icarus_lite.inference.matching import variables_of
 from icarus_lite.inference.network import kernels
 from icarus_lite.inference.network.relations import Facts, Pairs, Relation, View
 from icarus_lite.inference.network.vocabulary import Vocabulary
@@ -26,6 +25,7 @@ from icarus_lite.language.syntax import (
     Constant,
     Term,
     Variable,
+    variables_of,
 )
 from icarus_lite.records import dataclass
 

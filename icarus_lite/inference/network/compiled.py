@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from icarus_lite.inference.matching import Evaluator, Functions
+from icarus_lite.inference.evaluator import Evaluator, Functions
 from icarus_lite.inference.network import kernels
 from icarus_lite.inference.network.changes import Budget
 from icarus_lite.inference.network.design import Design, design_of, place_of

@@ -7,13 +7,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from enum import StrEnum
 
 from icarus_lite.errors import InferenceError
-from icarus_lite.inference.matching import variables_of
 from icarus_lite.inference.network.bodies import Body, Literal, Negation, body_of
 from icarus_lite.inference.network.generation.naming import Names, identifier
 from icarus_lite.inference.network.ordering import Access, access_to, bound_cells, expected_sizes
 from icarus_lite.inference.network.relations import Facts, Pairs, Relation
 from icarus_lite.inference.network.vocabulary import Vocabulary
-from icarus_lite.language.syntax import ConceptClause, Domain, Variable
+from icarus_lite.language.syntax import ConceptClause, Domain, Variable, variables_of
 from icarus_lite.records import dataclass, replace
 
 

@@ -13,10 +13,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from enum import StrEnum
 from typing import TypeAlias
 
-from icarus_lite.inference.matching import variables_of
 from icarus_lite.inference.network.bodies import Body, Literal, Negation, Test
 from icarus_lite.inference.network.relations import Facts, Pairs, Relation, View
-from icarus_lite.language.syntax import Call, Constant, Expression, Term
+from icarus_lite.language.syntax import Call, Constant, Expression, Term, variables_of
 from icarus_lite.records import dataclass
 
 _OBJECTS = 50.0

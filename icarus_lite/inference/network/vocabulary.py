@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from icarus_lite.inference.evaluator import Evaluator
 from icarus_lite.inference.facts import Lineages
-from icarus_lite.inference.matching import Evaluator
 from icarus_lite.language.checking.stratification import recursive_concepts, strata
 from icarus_lite.language.percept_types import lineages
 from icarus_lite.language.syntax import Domain

@@ -13,12 +13,13 @@ from time import thread_time
 from typing import Final, cast
 
 from icarus_lite.errors import InferenceError
+from icarus_lite.inference.evaluator import Evaluator
 from icarus_lite.inference.explaining.lookup import OpenRow, Pattern
 from icarus_lite.inference.expressions import Compiled, compile_test
 from icarus_lite.inference.facts import FactStore
-from icarus_lite.inference.matching import Evaluator, variables_of
 from icarus_lite.inference.profiling.plans import PlannedStep, RulePlan
 from icarus_lite.inference.views import Row
+from icarus_lite.language.syntax import variables_of
 from icarus_lite.records import dataclass
 
 MOST_ROWS: Final = 200_000

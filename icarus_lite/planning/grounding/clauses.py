@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 
-from icarus_lite.inference.matching import variables_of
 from icarus_lite.language.syntax import (
     Atom,
     Call,
     ConceptClause,
     SkillClause,
     Term,
+    variables_of,
 )
 from icarus_lite.planning.grounding.attaching import Attaching
 from icarus_lite.planning.grounding.views import names_of, terms_of

@@ -12,8 +12,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from types import CodeType
 
-from icarus_lite.inference.matching import variables_of
-from icarus_lite.language.syntax import Atom, Call, ConceptClause, Constant, Term, Variable
+from icarus_lite.language.syntax import (
+    Atom,
+    Call,
+    ConceptClause,
+    Constant,
+    Term,
+    Variable,
+    variables_of,
+)
 from icarus_lite.planning.grounding.clauses import GroundedClause, cells_of, is_bound
 from icarus_lite.planning.grounding.views import View, terms_of, view_of
 from icarus_lite.records import dataclass, field

@@ -6,8 +6,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import partial
 
 from icarus_lite.errors import InferenceError
-from icarus_lite.inference import ATTACHED
-from icarus_lite.inference.expressions import compile_bind, compile_test
+from icarus_lite.inference import ATTACHED, Evaluator
 from icarus_lite.language.syntax import ConceptClause
 from icarus_lite.planning.beginning import Beginning
 from icarus_lite.planning.grounding.attaching import Attaching
@@ -120,7 +119,7 @@ def _scope(
     excluded: Collection[Action],
 ) -> dict[str, object]:
     """Give what the compiled functions look into and write to, by the names they have for it."""
-    program, evaluator = prepared.program, beginning.evaluator
+    program = prepared.program
     scope: dict[str, object] = dict(program.constants)
     for name, view in program.indexes.items():
         scope[name] = base.index(view)
@@ -129,20 +128,33 @@ def _scope(
         if view.predicate not in rows:
             rows[view.predicate] = _static_facts(view.predicate, beginning)
         scope[name] = static_index(view, rows[view.predicate])
-    for name, (_, test, names) in program.tests.items():
-        asked = compile_test(test, _slots(names), evaluator.functions, evaluator.path)
-        scope[name] = _guarded(asked, initial, otherwise=False)
-    for name, (number, place, names) in program.binds.items():
-        concept = prepared.clauses[number].clause
-        assert isinstance(concept, ConceptClause)
-        expression = concept.binds[place].expression
-        computed = compile_bind(expression, _slots(names), evaluator.functions, evaluator.path)
-        scope[name] = _guarded(computed, initial, otherwise=None)
+    if program.tests or program.binds:
+        scope |= _expressions(prepared, beginning.evaluator, initial)
     for clause in prepared.clauses:
         name = clause.clause.head.predicate
         scope[f"banned{clause.number}"] = {a.args for a in excluded if a.name == name}
         scope |= _outlets(clause, prepared, base, found[clause.number])
     return scope
+
+
+def _expressions(
+    prepared: Prepared, evaluator: Evaluator, initial: int
+) -> dict[str, Callable[[Cells, tuple[int, ...]], Value | bool | None]]:
+    """Give what evaluates the tests and `:binds` of the compiled functions."""
+    from icarus_lite.inference import expressions  # noqa: PLC0415 - most of PDDL has none
+
+    compiled = {}
+    for name, (_, test, names) in prepared.program.tests.items():
+        slots = _slots(names)
+        asked = expressions.compile_test(test, slots, evaluator.functions, evaluator.path)
+        compiled[name] = _guarded(asked, initial, otherwise=False)
+    for name, (number, place, names) in prepared.program.binds.items():
+        concept = prepared.clauses[number].clause
+        assert isinstance(concept, ConceptClause)
+        bound, slots = concept.binds[place].expression, _slots(names)
+        computed = expressions.compile_bind(bound, slots, evaluator.functions, evaluator.path)
+        compiled[name] = _guarded(computed, initial, otherwise=None)
+    return compiled
 
 
 def _outlets(

@@ -8,14 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from icarus_lite.inference.matching import variables_of
 from icarus_lite.inference.network.bodies import Body, Literal, Negation, is_safe
 from icarus_lite.inference.network.generation.expressions import equality_source, literal
 from icarus_lite.inference.network.generation.naming import Names, identifier
 from icarus_lite.inference.network.generation.writing import Lines
 from icarus_lite.inference.network.ordering import Absent, Access, Ask, Find, Step, bound_cells
 from icarus_lite.inference.network.relations import Pairs, Relation
-from icarus_lite.language.syntax import Constant, Term
+from icarus_lite.language.syntax import Constant, Term, variables_of
 from icarus_lite.records import dataclass, field
 
 _DEEPEST = 14

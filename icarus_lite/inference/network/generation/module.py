@@ -10,7 +10,6 @@ from collections.abc import Callable, Mapping
 from types import CodeType
 from typing import Any
 
-from icarus_lite.inference.matching import variables_of
 from icarus_lite.inference.network.bodies import is_safe
 from icarus_lite.inference.network.design import Design, Head, Keeping
 from icarus_lite.inference.network.generation.expressions import equality_source, write_test
@@ -22,6 +21,7 @@ from icarus_lite.inference.network.generation.stores import title_of, write_stor
 from icarus_lite.inference.network.generation.writing import Lines
 from icarus_lite.inference.network.parts import Functions, Parts
 from icarus_lite.inference.network.relations import Pairs, Relation, View
+from icarus_lite.language.syntax import variables_of
 from icarus_lite.records import dataclass
 from icarus_lite.symbols import is_number
 

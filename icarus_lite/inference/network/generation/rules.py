@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from icarus_lite.inference.matching import variables_of
 from icarus_lite.inference.network.bodies import Body, Literal, Negation, is_safe
 from icarus_lite.inference.network.design import Design, Head, Keeping, place_of
 from icarus_lite.inference.network.generation.expressions import literal, write_test
@@ -23,7 +22,7 @@ from icarus_lite.inference.network.generation.joins import (
 from icarus_lite.inference.network.generation.writing import Lines
 from icarus_lite.inference.network.ordering import Step, arrange
 from icarus_lite.inference.network.relations import Facts, Pairs, Relation
-from icarus_lite.language.syntax import Expression, Term, Variable
+from icarus_lite.language.syntax import Expression, Term, Variable, variables_of
 from icarus_lite.records import dataclass, field
 
 

@@ -10,9 +10,8 @@ from hypothesis import strategies as st
 from icarus_lite.inference import Evaluator, FactStore, Matcher, match, unify
 from icarus_lite.inference.explaining import Standing, nearest_attempt
 from icarus_lite.inference.explaining.conjunctions import in_order
-from icarus_lite.inference.matching import variables_of
 from icarus_lite.language import parse_conditions
-from icarus_lite.language.syntax import Atom, Call, Condition, Constant, Variable
+from icarus_lite.language.syntax import Atom, Call, Condition, Constant, Variable, variables_of
 from icarus_lite.symbols import Belief
 
 X, Y = Variable("?x"), Variable("?y")
