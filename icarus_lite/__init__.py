@@ -24,8 +24,9 @@ if TYPE_CHECKING:
     from icarus_lite.errors import FrameError, IcarusError, InferenceError, TraceError
     from icarus_lite.execution import SkillPath
     from icarus_lite.language import DomainError, load_domain
+    from icarus_lite.outcomes import Outcome, Status
     from icarus_lite.planning import Failure, FailureReason
-    from icarus_lite.symbols import Action, Belief, Outcome, Percept, Status, Value
+    from icarus_lite.symbols import Action, Belief, Percept, Value
 
 _HOMES = {
     "Action": "symbols",
@@ -42,12 +43,12 @@ _HOMES = {
     "IcarusError": "errors",
     "InferenceError": "errors",
     "IntentionStatus": "agent",
-    "Outcome": "symbols",
+    "Outcome": "outcomes",
     "Percept": "symbols",
     "Request": "agent",
     "SkillPath": "execution",
     "Standing": "agent",
-    "Status": "symbols",
+    "Status": "outcomes",
     "TraceError": "errors",
     "Value": "symbols",
     "load_domain": "language",

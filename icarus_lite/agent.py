@@ -50,8 +50,9 @@ from icarus_lite.language.fragments import parse_atom, parse_conditions
 from icarus_lite.language.syntax import Atom, Condition, Constant, Domain
 from icarus_lite.language.teams import domain_of
 from icarus_lite.language.wording import closest, listing
+from icarus_lite.outcomes import Outcome
 from icarus_lite.records import dataclass, replace
-from icarus_lite.symbols import Belief, Outcome, Percept, is_number
+from icarus_lite.symbols import Belief, Percept, is_number
 
 __all__ = [
     "MAX_ATTEMPTS",

@@ -6,15 +6,16 @@ A *pattern* with variables lives in `icarus_lite.language.syntax`; everything he
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Mapping
-from enum import StrEnum
 from types import MappingProxyType
 
 from icarus_lite.records import dataclass, field
 
 Value = str | int | float
 """What a variable may be bound to: a symbol (or string), an integer or a float."""
+
+ATTACHED = "attached"
+"""The predicate of the attachment hierarchy: `(attached child parent)`."""
 
 _SYMBOL = r"[^\s()\"';?:^*|#]+(?<![.])|\d+(\.\d+)+"
 
@@ -29,9 +30,12 @@ def format_value(value: Value) -> str:
 
 
 def _is_symbol(text: str) -> bool:
-    # Nearly all are letters, digits, - and _; the pattern costs as much as a module to compile.
-    is_plain = text.isascii() and text.replace("-", "_").isidentifier()
-    return is_plain or re.fullmatch(_SYMBOL, text, re.ASCII) is not None
+    # Nearly all are letters, digits, - and _; for the others there is a pattern.
+    if text.isascii() and text.replace("-", "_").isidentifier():
+        return True
+    import re  # noqa: PLC0415 - see above
+
+    return re.fullmatch(_SYMBOL, text, re.ASCII) is not None
 
 
 def _reads_as_number(text: str) -> bool:
@@ -102,26 +106,3 @@ class Action:
 
     def __str__(self) -> str:
         return f"({' '.join([self.name, *map(format_value, self.args)])})"
-
-
-class Status(StrEnum):
-    """How far an action has come."""
-
-    SUCCEEDED = "succeeded"
-    FAILED = "failed"
-    RUNNING = "running"
-
-
-@dataclass(frozen=True, slots=True)
-class Outcome:
-    """What became of the last action, as the body measured it.
-
-    Args:
-        action: The action this is about.
-        status: Succeeded and failed actions have ended; a running one has not.
-        reason: Why it failed, in words; empty otherwise.
-    """
-
-    action: Action
-    status: Status = Status.SUCCEEDED
-    reason: str = ""

@@ -15,7 +15,7 @@ from aapa import Anchor
 from gearbox.rows import Episode, Places, Trouble
 from gearbox.trials import Benchmark
 from icarus_lite import DecisionKind, Status
-from icarus_lite.inference import ATTACHED
+from icarus_lite.symbols import ATTACHED
 from runtime.cycle_report import CycleReport
 
 HOLDING: Final = "holding"

@@ -8,16 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from icarus_lite.inference import (
-    ATTACHED,
-    Bindings,
-    Change,
-    FactStore,
-    bind_pattern,
-    change_of,
-)
+from icarus_lite.inference import Bindings, Change, FactStore, bind_pattern, change_of
 from icarus_lite.language.syntax import Atom, AttachmentRule, Condition, SkillClause, Term, Variable
-from icarus_lite.symbols import Value
+from icarus_lite.symbols import ATTACHED, Value
 
 
 def effects_of(clause: SkillClause, rules: Sequence[AttachmentRule]) -> tuple[Condition, ...]:

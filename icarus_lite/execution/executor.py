@@ -24,6 +24,7 @@ from icarus_lite.execution.requests import Request, is_needless, judge_request, 
 from icarus_lite.execution.selection import Selection
 from icarus_lite.inference import Evaluator
 from icarus_lite.language.syntax import Atom, Condition, Domain
+from icarus_lite.outcomes import Outcome
 from icarus_lite.planning import (
     Candidate,
     Failure,
@@ -37,7 +38,7 @@ from icarus_lite.planning import (
     plan_step,
 )
 from icarus_lite.records import replace
-from icarus_lite.symbols import Action, Outcome
+from icarus_lite.symbols import Action
 
 
 class Executor:

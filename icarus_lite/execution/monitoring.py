@@ -17,9 +17,9 @@ from enum import Enum, auto
 from icarus_lite.execution.effects import missing_effect
 from icarus_lite.execution.moment import Moment
 from icarus_lite.execution.repertoire import Skill
+from icarus_lite.outcomes import Outcome, Status
 from icarus_lite.planning import Failure, FailureReason, PlanStep
 from icarus_lite.records import dataclass
-from icarus_lite.symbols import Outcome, Status
 
 
 class Fate(Enum):

@@ -12,9 +12,10 @@ from icarus_lite.execution.monitoring import Execution, Fate, Judgement, broken
 from icarus_lite.execution.plan_following import PlanStatus
 from icarus_lite.execution.repertoire import Skill
 from icarus_lite.language.teams import performer, sentence
+from icarus_lite.outcomes import Outcome, Status
 from icarus_lite.planning import Failure, FailureReason, PlanStep, validate
 from icarus_lite.records import dataclass
-from icarus_lite.symbols import Action, Outcome, Status
+from icarus_lite.symbols import Action
 
 NO_ANSWER = "no answer"
 """How the reason of a failed outcome begins if the time for another agent's step is over."""

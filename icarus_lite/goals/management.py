@@ -22,9 +22,9 @@ from icarus_lite.goals.blockade import Blockade, Circumstances
 from icarus_lite.goals.nomination import Nominator
 from icarus_lite.goals.pursuit import MAX_UNDONE, Pursuit
 from icarus_lite.language.syntax import Domain
+from icarus_lite.outcomes import Outcome
 from icarus_lite.planning import Failure, FailureReason
 from icarus_lite.records import replace
-from icarus_lite.symbols import Outcome
 
 SWITCHING_MARGIN = 1.0
 """By how much the priority of another goal must be greater for the present one to be left."""

@@ -6,7 +6,7 @@ from icarus_lite._on_use import imported_on_use
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from icarus_lite.inference.attachment import ATTACHED, Hierarchy, Link, advance
+    from icarus_lite.inference.attachment import Hierarchy, Link, advance
     from icarus_lite.inference.beginning import given_memory
     from icarus_lite.inference.closure import Closure
     from icarus_lite.inference.contradictions import Doubt, Judgement, Withdrawal, carried_over
@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     )
     from icarus_lite.inference.network import Budget, ForgottenError
     from icarus_lite.inference.supports import Assertion, Derivation, Support, bind_pattern
+    from icarus_lite.symbols import ATTACHED
 
 _HOMES = {
     "ATTACHED": "attachment",

@@ -8,10 +8,7 @@ from icarus_lite.inference.effects import Change
 from icarus_lite.inference.facts import resolve, unify
 from icarus_lite.language.syntax import Atom, AttachmentRule
 from icarus_lite.records import dataclass, field
-from icarus_lite.symbols import Action, Belief, Value
-
-ATTACHED = "attached"
-"""The predicate of the relation: `(attached child parent)`."""
+from icarus_lite.symbols import ATTACHED, Action, Belief, Value
 
 
 @dataclass(frozen=True, slots=True)

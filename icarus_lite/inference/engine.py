@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from icarus_lite.errors import FrameError
-from icarus_lite.inference.attachment import ATTACHED, Hierarchy, advance
+from icarus_lite.inference.attachment import Hierarchy, advance
 from icarus_lite.inference.belief_supports import BeliefSupports, LazyFacts
 from icarus_lite.inference.causes import Causes
 from icarus_lite.inference.closure import Closure
@@ -27,8 +27,9 @@ from icarus_lite.inference.supports import Assertion, Support
 from icarus_lite.language.checking.stratification import strata
 from icarus_lite.language.percept_types import lineages
 from icarus_lite.language.syntax import Domain
+from icarus_lite.outcomes import Outcome, Status
 from icarus_lite.records import dataclass, field
-from icarus_lite.symbols import Belief, Outcome, Percept, Status
+from icarus_lite.symbols import ATTACHED, Belief, Percept
 
 if TYPE_CHECKING:
     from icarus_lite.inference.network import Budget, Changes, Network

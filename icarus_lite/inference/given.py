@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from icarus_lite.inference.attachment import ATTACHED, Hierarchy
+from icarus_lite.inference.attachment import Hierarchy
 from icarus_lite.inference.effects import Change
 from icarus_lite.inference.facts import ground
 from icarus_lite.language.syntax import Atom, Domain
 from icarus_lite.records import dataclass
-from icarus_lite.symbols import Action, Belief, Percept
+from icarus_lite.symbols import ATTACHED, Action, Belief, Percept
 
 GIVEN = Action("given")
 """Stands for the action behind a belief that was given at the start and that no skill asserted."""

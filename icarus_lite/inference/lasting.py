@@ -6,10 +6,10 @@ from collections.abc import Iterable, Mapping
 from functools import cached_property
 from typing import TypeAlias
 
-from icarus_lite.inference.attachment import ATTACHED, Hierarchy, Link
+from icarus_lite.inference.attachment import Hierarchy, Link
 from icarus_lite.inference.supports import Assertion, Support
 from icarus_lite.records import dataclass
-from icarus_lite.symbols import Belief, Value
+from icarus_lite.symbols import ATTACHED, Belief, Value
 
 Given: TypeAlias = Mapping[Belief, tuple[Support, ...]]
 """The beliefs that rest on actions, each with what asserted it."""

@@ -6,10 +6,13 @@ Spans never take part in comparison, so two trees are equal when they mean the s
 from __future__ import annotations
 
 from collections.abc import Iterator
-from enum import StrEnum
 
 from icarus_lite.records import dataclass, field
 from icarus_lite.symbols import Value, format_value
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from icarus_lite.language.breakpoint import Breakpoint
 
 
 @dataclass(frozen=True, slots=True)
@@ -279,33 +282,6 @@ class LongTermGoal:
     relevance: tuple[Condition, ...] = ()
     priority: float | Variable = 0.0
     maintain: bool = False
-    span: Span = field(default=NOWHERE, compare=False)
-
-
-class Moment(StrEnum):
-    """When a breakpoint stops a run, by the word that `:break` has for it."""
-
-    GAIN = "on-gain"
-    LOSS = "on-loss"
-    START = "on-start"
-    SUCCESS = "on-success"
-    FAILURE = "on-failure"
-
-
-@dataclass(frozen=True, slots=True)
-class Breakpoint:
-    """Where to stop: `(break (attached ?obj case))`, or `:break on-gain` in a clause.
-
-    Args:
-        condition: A literal over beliefs, or the pattern of a skill.
-        moment: `GAIN` when an instance of the literal begins to hold and `LOSS` when it ceases
-            to; `START`, `SUCCESS` and `FAILURE` of a skill. The form gives `GAIN` for a literal
-            and `START` for a skill.
-        span: The literal of a form, or the word of a field.
-    """
-
-    condition: Condition
-    moment: Moment = Moment.GAIN
     span: Span = field(default=NOWHERE, compare=False)
 
 

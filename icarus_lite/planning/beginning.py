@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from icarus_lite.inference import (
-    ATTACHED,
     Evaluator,
     FactStore,
     Hierarchy,
@@ -16,7 +15,7 @@ from icarus_lite.inference import (
 from icarus_lite.language.percept_types import lineages
 from icarus_lite.language.syntax import Atom, Condition, Domain
 from icarus_lite.records import dataclass
-from icarus_lite.symbols import Belief, Value
+from icarus_lite.symbols import ATTACHED, Belief, Value
 
 
 @dataclass(frozen=True, slots=True)

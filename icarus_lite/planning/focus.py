@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from icarus_lite.inference import ATTACHED, Closure, Hierarchy
+from icarus_lite.inference import Closure, Hierarchy
 from icarus_lite.language.syntax import Condition, Domain
 from icarus_lite.planning.situation import Imagination, Situation
 from icarus_lite.planning.steps import PlanStep
+from icarus_lite.symbols import ATTACHED
 
 
 class Focus(Imagination):

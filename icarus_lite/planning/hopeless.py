@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from icarus_lite.inference import ATTACHED, Evaluator, FactStore, first_obstacle, unify
+from icarus_lite.inference import Evaluator, FactStore, first_obstacle, unify
 from icarus_lite.language.syntax import (
     Atom,
     Call,
@@ -26,7 +26,7 @@ from icarus_lite.planning.grounding import Grounding
 from icarus_lite.planning.relevance import can_change, relevance
 from icarus_lite.planning.situation import Imagination
 from icarus_lite.records import dataclass
-from icarus_lite.symbols import Value
+from icarus_lite.symbols import ATTACHED, Value
 
 _DEEPEST = 4
 """How far back from the goal the answer goes."""

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from icarus_lite.inference import ATTACHED, FactStore, Support, first_obstacle
+from icarus_lite.inference import FactStore, Support, first_obstacle
 from icarus_lite.language.syntax import Condition
 from icarus_lite.planning.naming import objects_of
 from icarus_lite.planning.situation import Imagination, Situation
 from icarus_lite.planning.steps import PlanStep
 from icarus_lite.records import dataclass
-from icarus_lite.symbols import Belief
+from icarus_lite.symbols import ATTACHED, Belief
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,9 +10,9 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator
 from itertools import chain
 
-from icarus_lite.inference import ATTACHED
 from icarus_lite.language.syntax import Condition, Domain, SkillClause
 from icarus_lite.records import dataclass
+from icarus_lite.symbols import ATTACHED
 
 Sign = tuple[str, bool]
 """A predicate, and whether it is to become true or false."""

@@ -6,7 +6,6 @@ from collections.abc import Hashable, Iterator, Mapping, Sequence
 from typing import TypeAlias
 
 from icarus_lite.inference import (
-    ATTACHED,
     Change,
     Closure,
     Evaluator,
@@ -24,7 +23,7 @@ from icarus_lite.planning.beginning import Beginning, holds
 from icarus_lite.planning.layers import LayeredFacts, fluents_of
 from icarus_lite.planning.steps import PlanStep, plan_step
 from icarus_lite.records import dataclass, replace
-from icarus_lite.symbols import Action, Belief, Value
+from icarus_lite.symbols import ATTACHED, Action, Belief, Value
 
 
 @dataclass(frozen=True, slots=True)

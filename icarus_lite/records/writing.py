@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Mapping
-from functools import cache, partial
 from types import FunctionType, MemberDescriptorType
 
 TYPE_CHECKING = False
@@ -57,7 +56,7 @@ def _init(cls: Any, *, frozen: bool) -> FunctionType:
             known[f"_set_{index}"] = _setter(cls, name)
         if each.init and (made or each.default is not MISSING):
             defaults.append(each.default)
-    template = _template(shape, frozen, hasattr(cls, "__post_init__"))(**known)
+    template = _template(shape, frozen=frozen, then=hasattr(cls, "__post_init__"))(**known)
     code = template.__code__
     init = FunctionType(
         code.replace(
@@ -84,7 +83,7 @@ def uncompiled_init(cls: Any, *, frozen: bool) -> Callable[..., None]:
     """
     fields: dict[str, Field] = cls.__late_fields__
     assigned = [
-        (_setter(cls, name) if frozen else partial(_set, name), name, each)
+        (_setter(cls, name) if frozen else _setter_of(name), name, each)
         for name, each in fields.items()
         if each.init or each.default_factory is not MISSING or each.default is not MISSING
     ]
@@ -141,8 +140,8 @@ def _required(fields: Mapping[str, Field]) -> frozenset[str]:
     return frozenset(required)
 
 
-def _set(name: str, instance: Any, value: Any) -> None:
-    setattr(instance, name, value)
+def _setter_of(name: str) -> Callable[[Any, Any], None]:
+    return lambda instance, value: setattr(instance, name, value)
 
 
 def _setter(cls: Any, name: str) -> Callable[[Any, Any], None]:
@@ -153,8 +152,18 @@ def _setter(cls: Any, name: str) -> Callable[[Any, Any], None]:
     return lambda instance, value: object.__setattr__(instance, name, value)
 
 
-@cache
-def _template(shape: str, frozen: bool, then: bool) -> Callable[..., FunctionType]:  # noqa: FBT001 - a key
+_TEMPLATES: dict[tuple[str, bool, bool], Callable[..., FunctionType]] = {}
+
+
+def _template(shape: str, *, frozen: bool, then: bool) -> Callable[..., FunctionType]:
+    """Give what all `__init__` of a shape have in common; it is compiled once."""
+    found = _TEMPLATES.get((shape, frozen, then))
+    if found is None:
+        found = _TEMPLATES[shape, frozen, then] = _compiled(shape, frozen=frozen, then=then)
+    return found
+
+
+def _compiled(shape: str, *, frozen: bool, then: bool) -> Callable[..., FunctionType]:
     """Compile what all `__init__` of a shape have in common; compiling takes longest.
 
     Args:

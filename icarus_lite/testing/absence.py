@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from icarus_lite.inference import ATTACHED, Evaluator, FactStore, near_misses, nearest_beliefs
+from icarus_lite.inference import Evaluator, FactStore, near_misses, nearest_beliefs
 from icarus_lite.language.syntax import Atom, Domain, Span
-from icarus_lite.symbols import Belief, format_value
+from icarus_lite.symbols import ATTACHED, Belief, format_value
 
 
 def why_absent(

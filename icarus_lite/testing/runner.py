@@ -15,7 +15,8 @@ from icarus_lite.inference import (
     match,
 )
 from icarus_lite.language.syntax import Atom, Constant, Domain, DomainTest, LaterCycle
-from icarus_lite.symbols import Action, Belief, Outcome, Percept, Value
+from icarus_lite.outcomes import Outcome
+from icarus_lite.symbols import Action, Belief, Percept, Value
 from icarus_lite.testing.absence import why_absent
 from icarus_lite.testing.outcome import CaseOutcome, Difference, Kind
 from icarus_lite.testing.plans import check_plan

@@ -6,7 +6,8 @@ from collections.abc import Callable, Iterator
 
 from icarus_lite.inference import Chronicle, Period, Withdrawal
 from icarus_lite.language.syntax import Atom
-from icarus_lite.symbols import Belief, Outcome
+from icarus_lite.outcomes import Outcome
+from icarus_lite.symbols import Belief
 
 
 class ChronicleAsOf(Chronicle):

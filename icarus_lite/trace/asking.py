@@ -10,8 +10,9 @@ from icarus_lite.inference import Period, Withdrawal, match, percept_facts, what
 from icarus_lite.language.fragments import parse_conditions
 from icarus_lite.language.percept_types import lineages
 from icarus_lite.language.syntax import Atom, Condition, Constant
+from icarus_lite.outcomes import Status
 from icarus_lite.records import dataclass, replace
-from icarus_lite.symbols import Belief, Percept, Status, Value, format_value
+from icarus_lite.symbols import Belief, Percept, Value, format_value
 from icarus_lite.trace.recording import Instant, Recording
 
 

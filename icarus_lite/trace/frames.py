@@ -11,8 +11,9 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
 from icarus_lite.errors import FrameError
+from icarus_lite.outcomes import Outcome, Status
 from icarus_lite.records import dataclass
-from icarus_lite.symbols import Action, Outcome, Percept, Status, Value, is_number
+from icarus_lite.symbols import Action, Percept, Value, is_number
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,8 @@ from typing import Final, TypeVar
 import msgspec
 
 from icarus_lite.errors import TraceError
-from icarus_lite.symbols import Action, Outcome, Percept
+from icarus_lite.outcomes import Outcome
+from icarus_lite.symbols import Action, Percept
 from icarus_lite.trace.record import FORMAT, VERSION
 from icarus_lite.trace.schema import ChangeLine, InputLine, OutcomeRow
 

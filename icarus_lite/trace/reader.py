@@ -7,8 +7,9 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from icarus_lite.errors import TraceError
+from icarus_lite.outcomes import Outcome
 from icarus_lite.records import dataclass
-from icarus_lite.symbols import Outcome, Percept
+from icarus_lite.symbols import Percept
 from icarus_lite.trace.frames import outcome_from_json
 from icarus_lite.trace.record import FORMAT, VERSION
 

@@ -15,7 +15,8 @@ from icarus_lite.errors import TraceError
 from icarus_lite.execution import GoalChange, Request, SkillPath
 from icarus_lite.inference import Assertion, BeliefState, Support
 from icarus_lite.language.syntax import Atom, Domain
-from icarus_lite.symbols import Outcome, Percept
+from icarus_lite.outcomes import Outcome
+from icarus_lite.symbols import Percept
 from icarus_lite.trace.plans import plan_row
 
 FORMAT = "icarus-trace"

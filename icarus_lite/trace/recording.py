@@ -16,7 +16,6 @@ from pathlib import Path
 
 from icarus_lite.errors import TraceError
 from icarus_lite.inference import (
-    ATTACHED,
     Assertion,
     BeliefState,
     Chronicle,
@@ -36,8 +35,9 @@ from icarus_lite.inference import (
 )
 from icarus_lite.language import DomainError, diagnose_text
 from icarus_lite.language.syntax import Domain
+from icarus_lite.outcomes import Outcome
 from icarus_lite.records import dataclass, field
-from icarus_lite.symbols import Action, Belief, Outcome, Percept, Value
+from icarus_lite.symbols import ATTACHED, Action, Belief, Percept, Value
 from icarus_lite.trace.as_of import ChronicleAsOf
 from icarus_lite.trace.ground_text import parse_action, parse_belief
 from icarus_lite.trace.lines import TraceLines, outcome_of

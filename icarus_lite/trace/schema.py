@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import msgspec
 
-from icarus_lite.symbols import Status, Value
+from icarus_lite.outcomes import Status
+from icarus_lite.symbols import Value
 
 
 class PerceptRow(msgspec.Struct, frozen=True):

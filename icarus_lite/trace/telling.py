@@ -11,9 +11,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby, zip_longest
 
-from icarus_lite.inference import ATTACHED, Period, Withdrawal
+from icarus_lite.inference import Period, Withdrawal
+from icarus_lite.outcomes import Status
 from icarus_lite.records import dataclass, field
-from icarus_lite.symbols import Status
+from icarus_lite.symbols import ATTACHED
 from icarus_lite.trace.recording import Recording
 from icarus_lite.trace.serving import serves
 

@@ -15,8 +15,8 @@ from aapa.lacater.models import ActionReport
 from aapa.lacater.scene import Scene
 from icarus_lite import Action, Outcome, Status
 from icarus_lite.inference import InferenceEngine, Memory
-from icarus_lite.inference.attachment import ATTACHED
 from icarus_lite.language.syntax import Domain
+from icarus_lite.symbols import ATTACHED
 
 _NOTHING = "_no_op"
 """CATER's record of an object with which nothing was done."""

@@ -23,7 +23,8 @@ if TYPE_CHECKING:
         StepProfile,
     )
     from icarus_lite.language.syntax import Domain
-    from icarus_lite.symbols import Outcome, Percept
+    from icarus_lite.outcomes import Outcome
+    from icarus_lite.symbols import Percept
 
 _WIDTH = 60
 

@@ -136,7 +136,8 @@ def _example(domain: Domain, task: Task) -> DomainTest | None:
 
 def _after_test(engine: InferenceEngine, test: DomainTest) -> Memory:
     from icarus_lite.inference import Memory, given_percepts
-    from icarus_lite.symbols import Action, Outcome
+    from icarus_lite.outcomes import Outcome
+    from icarus_lite.symbols import Action
 
     if not test.actions and not test.then:
         return engine.step_once(Memory(), given_percepts(engine.domain, test.percepts))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from lsprotocol import types
 
 from icarus_lite.language.editing import Fix, fixes
-from icarus_lite.language.reading.brackets import Lines
+from icarus_lite.language.reading.lines import Lines
 from runtime.lsp.documents import Project
 from runtime.lsp.findings import diagnosed, diagnostic
 

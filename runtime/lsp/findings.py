@@ -9,7 +9,7 @@ from lsprotocol import types
 
 from icarus_lite.language import Diagnostic, Severity, diagnose_text
 from icarus_lite.language.editing import Role
-from icarus_lite.language.reading.brackets import Lines
+from icarus_lite.language.reading.lines import Lines
 from runtime.lsp.documents import Project
 
 _SEVERITIES: Mapping[Severity, types.DiagnosticSeverity] = MappingProxyType(

@@ -8,8 +8,8 @@ from typing import Final
 
 import rerun as rr
 
-from icarus_lite.inference import ATTACHED
-from icarus_lite.symbols import Belief, Status, format_value
+from icarus_lite.outcomes import Status
+from icarus_lite.symbols import ATTACHED, Belief, format_value
 from icarus_lite.trace import Recording
 from runtime.kinematics import MODELS, link_frames
 

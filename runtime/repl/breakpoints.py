@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from icarus_lite.inference import match
-from icarus_lite.language.syntax import Atom, Domain, Moment
+from icarus_lite.language.breakpoint import Moment
+from icarus_lite.language.syntax import Atom, Domain
 from icarus_lite.symbols import Belief
 from icarus_lite.trace import matching, parse_action, pattern_of
 from runtime.repl.command import CommandError

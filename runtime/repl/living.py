@@ -10,7 +10,8 @@ from rich.console import RenderableType
 from icarus_lite.inference import ground
 from icarus_lite.language import diagnose_file
 from icarus_lite.language.diagnostics import Severity, render
-from icarus_lite.symbols import Action, Outcome, Percept, Status
+from icarus_lite.outcomes import Outcome, Status
+from icarus_lite.symbols import Action, Percept
 from icarus_lite.trace import pattern_of
 from runtime.repl.command import Command, CommandError, Takes, no_words
 from runtime.repl.domain_changes import domain_changes

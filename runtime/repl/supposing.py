@@ -6,18 +6,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from icarus_lite.inference import (
-    ATTACHED,
-    Assertion,
-    Derivation,
-    Hierarchy,
-    InferenceEngine,
-    Memory,
-    ground,
-)
+from icarus_lite.inference import Assertion, Derivation, Hierarchy, InferenceEngine, Memory, ground
 from icarus_lite.language.checking.vocabulary import Origin
 from icarus_lite.language.syntax import Atom, Domain
-from icarus_lite.symbols import Action, Belief, Percept
+from icarus_lite.symbols import ATTACHED, Action, Belief, Percept
 from icarus_lite.trace import Instant, pattern_of
 from runtime.repl.command import CommandError
 

@@ -9,8 +9,9 @@ from rich.console import RenderableType
 from icarus_lite.inference import InferenceEngine, Memory, ground
 from icarus_lite.language.fragments import parse_conditions
 from icarus_lite.language.syntax import Condition
+from icarus_lite.outcomes import Outcome
 from icarus_lite.planning import Imagination, Plan, find_plan
-from icarus_lite.symbols import Action, Outcome
+from icarus_lite.symbols import Action
 from icarus_lite.trace import pattern_of
 from runtime.repl.command import Command, CommandError, Takes, no_words
 from runtime.repl.session import Session

@@ -13,8 +13,9 @@ from icarus_lite.inference import (
     given_percepts,
 )
 from icarus_lite.language.syntax import Atom, Call, Condition, Constant, Domain
+from icarus_lite.outcomes import Outcome
 from icarus_lite.planning import Imagination, Plan, Situation, find_plan
-from icarus_lite.symbols import Action, Belief, Outcome, Value
+from icarus_lite.symbols import Action, Belief, Value
 
 
 @dataclass(frozen=True)

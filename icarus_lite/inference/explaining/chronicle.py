@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Collection, Iterable, Iterator, Sequence
 
-from icarus_lite.inference.attachment import ATTACHED
 from icarus_lite.inference.contradictions import Withdrawal
 from icarus_lite.inference.facts import Bindings, match, resolve, unify
 from icarus_lite.inference.supports import bind_pattern
 from icarus_lite.language.syntax import Atom, AttachmentRule, Domain
+from icarus_lite.outcomes import Outcome, Status
 from icarus_lite.records import dataclass
-from icarus_lite.symbols import Action, Belief, Outcome, Status, Value, format_value
+from icarus_lite.symbols import ATTACHED, Action, Belief, Value, format_value
 
 
 @dataclass(frozen=True, slots=True)

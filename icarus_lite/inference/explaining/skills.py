@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from icarus_lite.inference.attachment import ATTACHED
 from icarus_lite.inference.explaining.attempts import nearest_attempt
 from icarus_lite.inference.explaining.context import Context
 from icarus_lite.inference.explaining.diagnosis import diagnose
@@ -15,6 +14,7 @@ from icarus_lite.inference.facts import Bindings
 from icarus_lite.inference.supports import bind_pattern
 from icarus_lite.language.syntax import Atom, Condition, SkillClause
 from icarus_lite.records import dataclass
+from icarus_lite.symbols import ATTACHED
 
 
 @dataclass(frozen=True, slots=True)

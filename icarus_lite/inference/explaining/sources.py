@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from icarus_lite.inference.attachment import ATTACHED
 from icarus_lite.inference.explaining.context import Context
 from icarus_lite.inference.explaining.fitting import fit
 from icarus_lite.inference.supports import bind_pattern
@@ -12,6 +11,7 @@ from icarus_lite.language.checking.vocabulary import Definition, Origin
 from icarus_lite.language.syntax import Atom, AttachmentRule, Span
 from icarus_lite.language.wording import closest, listing
 from icarus_lite.records import dataclass
+from icarus_lite.symbols import ATTACHED
 
 
 @dataclass(frozen=True, slots=True)

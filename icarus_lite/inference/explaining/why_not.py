@@ -22,8 +22,9 @@ from icarus_lite.inference.facts import match
 from icarus_lite.inference.supports import bind_pattern
 from icarus_lite.language.fragments import parse_conditions
 from icarus_lite.language.syntax import Atom, ConceptClause, Condition, Constant, SkillClause
+from icarus_lite.outcomes import Outcome, Status
 from icarus_lite.records import dataclass
-from icarus_lite.symbols import Belief, Outcome, Status
+from icarus_lite.symbols import Belief
 
 DEPTH: Final = 2
 """How many steps down a missing belief is followed to what is missing for it."""

@@ -9,8 +9,9 @@ from icarus_lite.inference.network import CompiledDomain
 from icarus_lite.inference.profiling.engine_time import Cycle, EngineTime, engine_time
 from icarus_lite.inference.profiling.plans import RulePlan, rule_plans
 from icarus_lite.inference.profiling.rows import ClauseProfile, Profiler
+from icarus_lite.outcomes import Outcome
 from icarus_lite.records import dataclass
-from icarus_lite.symbols import Outcome, Percept
+from icarus_lite.symbols import Percept
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,7 +18,7 @@ from icarus_lite.language.checking.silencing import unsilenced
 from icarus_lite.language.checking.stratification import negation_cycles, recursive_concepts
 from icarus_lite.language.checking.usage import check_usage
 from icarus_lite.language.checking.variables import check_concept_variables, check_skill_variables
-from icarus_lite.language.checking.vocabulary import ATTACHED, Origin, Vocabulary, vocabulary
+from icarus_lite.language.checking.vocabulary import Origin, Vocabulary, vocabulary
 from icarus_lite.language.diagnostics import Diagnostic, has_errors, in_order
 from icarus_lite.language.functions import Function, PythonFunctions, function_table
 from icarus_lite.language.percept_types import check_percept_types
@@ -38,6 +38,7 @@ from icarus_lite.language.syntax import (
     Variable,
 )
 from icarus_lite.language.wording import listing
+from icarus_lite.symbols import ATTACHED
 
 
 def check_domain(

@@ -11,7 +11,7 @@ from collections import deque
 from collections.abc import Iterable, Iterator
 
 from icarus_lite.language.checking.report import Report
-from icarus_lite.language.checking.vocabulary import ATTACHED, Origin, Vocabulary
+from icarus_lite.language.checking.vocabulary import Origin, Vocabulary
 from icarus_lite.language.syntax import (
     Atom,
     ConceptClause,
@@ -20,6 +20,7 @@ from icarus_lite.language.syntax import (
     Domain,
     SkillClause,
 )
+from icarus_lite.symbols import ATTACHED
 
 _BASE = (Origin.PERCEPT, Origin.GIVEN)
 

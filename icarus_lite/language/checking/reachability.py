@@ -10,8 +10,9 @@ from collections.abc import Iterable, Iterator
 from typing import TypeAlias
 
 from icarus_lite.language.checking.report import Report
-from icarus_lite.language.checking.vocabulary import ATTACHED, Vocabulary
+from icarus_lite.language.checking.vocabulary import Vocabulary
 from icarus_lite.language.syntax import Condition, Domain
+from icarus_lite.symbols import ATTACHED
 
 _Sign: TypeAlias = tuple[str, bool]  # a predicate, and whether it becomes true or false
 

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 
-from icarus_lite.language.diagnostics import Diagnostic, Severity
-from icarus_lite.language.reading.brackets import Lines
+from icarus_lite.language.reading.lines import Lines
 from icarus_lite.language.syntax import Atom, Source, Span
 from icarus_lite.language.wording import closest
 from icarus_lite.records import dataclass, field, replace
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from icarus_lite.language.diagnostics import Diagnostic
+
 _MOST_SEARCHED = 5_000  # words: what half a second is enough for
-_OPENING = r"\([ \t\n\r\f\v]*\*?"
-_WORD_ENDS = " \t\n\r\f\v()\"';"
+_BLANKS = " \t\n\r\f\v"
+_WORD_ENDS = _BLANKS + "()\"';"
 
 
 @dataclass(slots=True)
@@ -29,17 +31,30 @@ class Report:
         self, span: Span, code: str, message: str, hint: str = "", *, label: str = ""
     ) -> None:
         """Add something that keeps the domain from loading."""
-        self._add(Severity.ERROR, span, code, message, hint, label)
+        self._add("error", span, code, message, hint, label)
 
     def warning(
         self, span: Span, code: str, message: str, hint: str = "", *, label: str = ""
     ) -> None:
         """Add something that is probably a mistake."""
-        self._add(Severity.WARNING, span, code, message, hint, label)
+        self._add("warning", span, code, message, hint, label)
 
     def note(self, span: Span, code: str, message: str, hint: str = "", *, label: str = "") -> None:
         """Add something that is worth knowing."""
-        self._add(Severity.NOTE, span, code, message, hint, label)
+        self._add("note", span, code, message, hint, label)
+
+    @property
+    def has_errors(self) -> bool:
+        """Whether anything found so far keeps the domain from loading."""
+        return any(found.severity == "error" for found in self.diagnostics)
+
+    def findings(self) -> tuple[Diagnostic, ...]:
+        """Give what was found, in the order of the text."""
+        if not self.diagnostics:
+            return ()
+        from icarus_lite.language.diagnostics import in_order  # noqa: PLC0415 - mostly not needed
+
+        return in_order(self.diagnostics)
 
     def closest(self, word: str, candidates: Iterable[str]) -> str | None:
         """Give the candidate that the word was probably meant to be, or None.
@@ -57,10 +72,16 @@ class Report:
         if not atom.span.line:
             return atom.span
         text, lines = self._text(atom.span)
-        match = re.compile(_OPENING).match(text, lines.offset(atom.span.line, atom.span.column))
-        if match is None or not text.startswith(atom.predicate, match.end()):
+        start = lines.offset(atom.span.line, atom.span.column)
+        if not text.startswith("(", start):
             return atom.span
-        return self._span(lines, match.end(), len(atom.predicate), atom.span)
+        start += 1
+        while text.startswith(tuple(_BLANKS), start):
+            start += 1
+        start += text.startswith("*", start)
+        if not text.startswith(atom.predicate, start):
+            return atom.span
+        return self._span(lines, start, len(atom.predicate), atom.span)
 
     def attribute_of(self, atom: Atom, attribute: str) -> Span:
         """Give the place of an attribute's marker and name in an atom."""
@@ -88,8 +109,10 @@ class Report:
         return replace(lines.span(offset, offset + length), path=inside.path)
 
     def _add(
-        self, severity: Severity, span: Span, code: str, message: str, hint: str, label: str
+        self, severity: str, span: Span, code: str, message: str, hint: str, label: str
     ) -> None:
+        from icarus_lite.language.diagnostics import Diagnostic, Severity  # noqa: PLC0415
+
         path = span.path or self.source.path
-        found = Diagnostic(path, span, severity, code, message, hint, label)
+        found = Diagnostic(path, span, Severity(severity), code, message, hint, label)
         self.diagnostics.append(found)

@@ -8,9 +8,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from icarus_lite.language.checking.report import Report
-from icarus_lite.language.checking.vocabulary import ATTACHED
 from icarus_lite.language.percept_types import lineages
 from icarus_lite.language.syntax import Atom, Condition, Domain, DomainTest
+from icarus_lite.symbols import ATTACHED
 
 _HINT = "remove it, or leave it for those who ask: `; noqa: ICR040` silences this"
 

@@ -8,9 +8,7 @@ from enum import StrEnum
 from icarus_lite.language.percept_types import inherited_attributes
 from icarus_lite.language.syntax import NOWHERE, Atom, Domain, Span
 from icarus_lite.records import dataclass, replace
-
-ATTACHED = "attached"
-"""The predicate of the attachment hierarchy: `(attached child parent)`."""
+from icarus_lite.symbols import ATTACHED
 
 
 class Origin(StrEnum):

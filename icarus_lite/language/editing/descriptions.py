@@ -6,12 +6,13 @@ import re
 import textwrap
 from collections.abc import Collection, Mapping, Sequence
 
-from icarus_lite.language.checking.vocabulary import ATTACHED, Origin
+from icarus_lite.language.checking.vocabulary import Origin
 from icarus_lite.language.editing.index import Index, Located, Thing
 from icarus_lite.language.editing.occurrences import Occurrence, Role
 from icarus_lite.language.functions import FUNCTIONS, Function
 from icarus_lite.language.keywords import FORMS, MOMENTS, NOT, Keyword, field_named
 from icarus_lite.language.wording import listing
+from icarus_lite.symbols import ATTACHED
 
 _MOST_CLAUSES = 4
 _MOST_USERS = 12

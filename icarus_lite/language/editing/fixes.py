@@ -9,8 +9,8 @@ from icarus_lite.language.diagnostics import Diagnostic
 from icarus_lite.language.editing.lexemes import lexemes
 from icarus_lite.language.editing.nesting import Group, nest
 from icarus_lite.language.editing.occurrences import Role, occurrences
-from icarus_lite.language.reading.brackets import Lines
 from icarus_lite.language.reading.indentation import tokens
+from icarus_lite.language.reading.lines import Lines
 from icarus_lite.records import dataclass
 
 _MEANT = re.compile(r"did you mean (?:`([^`]+)`|(\?[^ ?]+))\?")

@@ -6,9 +6,10 @@ import re
 from bisect import bisect_right
 from collections.abc import Iterable, Iterator
 
-from icarus_lite.language.checking.vocabulary import ATTACHED, Origin
+from icarus_lite.language.checking.vocabulary import Origin
 from icarus_lite.language.editing.occurrences import Occurrence, Role, occurrences
 from icarus_lite.records import dataclass
+from icarus_lite.symbols import ATTACHED
 
 _THINGS = (
     Role.PREDICATE,

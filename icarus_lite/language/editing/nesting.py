@@ -7,7 +7,8 @@ from itertools import pairwise
 from typing import TypeAlias
 
 from icarus_lite.language.editing.lexemes import Kind, Lexeme
-from icarus_lite.language.reading.brackets import FORM_NAMES, MAX_DEPTH
+from icarus_lite.language.reading.brackets import FORM_NAMES
+from icarus_lite.language.reading.lines import MAX_DEPTH
 from icarus_lite.records import dataclass, field
 
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from icarus_lite.errors import IcarusError
-from icarus_lite.language.checking.vocabulary import ATTACHED
 from icarus_lite.language.editing.index import Index, Located, Thing
 from icarus_lite.language.editing.lexemes import Kind, word_kind
 from icarus_lite.language.editing.occurrences import Occurrence, Role
 from icarus_lite.language.keywords import NOT
+from icarus_lite.symbols import ATTACHED
 
 _MARKERS = {Role.VARIABLE: "?", Role.ATTRIBUTE: "^"}
 _RENAMEABLE = (Role.PREDICATE, Role.SKILL, Role.ATTRIBUTE, Role.VARIABLE, Role.AGENT)

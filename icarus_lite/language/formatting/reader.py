@@ -14,7 +14,7 @@ from icarus_lite.language.formatting.tree import (
     is_block,
     make_group,
 )
-from icarus_lite.language.reading.brackets import MAX_DEPTH
+from icarus_lite.language.reading.lines import MAX_DEPTH
 from icarus_lite.records import dataclass, field, replace
 
 _TOKEN = re.compile(

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from icarus_lite.language.checking.vocabulary import ATTACHED
 from icarus_lite.language.syntax import Atom, Domain, SkillClause, Term, Variable
 from icarus_lite.records import dataclass
+from icarus_lite.symbols import ATTACHED
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from icarus_lite.language.checking.vocabulary import ATTACHED
 from icarus_lite.language.pddl.attaching import Attaching, Unclear, bonds
 from icarus_lite.language.pddl.exported_conditions import Conditions
 from icarus_lite.language.pddl.syntax import Effect, Equal, Formula, Not, Typed
@@ -25,6 +24,7 @@ from icarus_lite.language.syntax import (
     Variable,
 )
 from icarus_lite.records import dataclass, field
+from icarus_lite.symbols import ATTACHED
 
 ASSERTED = "asserted"
 """Ends the name of the predicate that says: an effect has made it so."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from icarus_lite.language.checking.vocabulary import ATTACHED
 from icarus_lite.language.pddl.exported_conditions import Body, Conditions
 from icarus_lite.language.pddl.exported_effects import ASSERTED, CIRCLE, UNTOUCHED
 from icarus_lite.language.pddl.scope import RefusedError
@@ -21,6 +20,7 @@ from icarus_lite.language.pddl.syntax import (
 from icarus_lite.language.pddl.vocabulary import PddlVocabulary, variable_name
 from icarus_lite.language.syntax import ConceptClause, Constant
 from icarus_lite.records import dataclass
+from icarus_lite.symbols import ATTACHED
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,6 @@ import itertools
 from collections.abc import Iterator, Mapping, Sequence
 
 from icarus_lite.language.checking.report import Report
-from icarus_lite.language.checking.vocabulary import ATTACHED
 from icarus_lite.language.diagnostics import Diagnostic, DomainError, has_errors, in_order
 from icarus_lite.language.pddl.attaching import attachings, may_circle
 from icarus_lite.language.pddl.exported_conditions import Conditions
@@ -32,7 +31,7 @@ from icarus_lite.language.pddl.values import possible_values
 from icarus_lite.language.pddl.vocabulary import PddlVocabulary, variable_name
 from icarus_lite.language.syntax import Condition, Constant, Domain, SkillClause, Term
 from icarus_lite.records import dataclass
-from icarus_lite.symbols import Action, Value
+from icarus_lite.symbols import ATTACHED, Action, Value
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,6 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from icarus_lite.language.checking.report import Report
 from icarus_lite.language.checking.stratification import negation_cycles
-from icarus_lite.language.checking.vocabulary import ATTACHED
 from icarus_lite.language.pddl.conditions import (
     Alternative,
     Alternatives,
@@ -43,6 +42,7 @@ from icarus_lite.language.syntax import (
     Variable,
 )
 from icarus_lite.records import dataclass, field
+from icarus_lite.symbols import ATTACHED
 
 TASK = "problem"
 """The name of the task that an imported problem becomes."""

@@ -9,10 +9,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from icarus_lite.language.checking.vocabulary import ATTACHED
 from icarus_lite.language.syntax import Call, ConceptClause, Condition, Domain, SkillClause
 from icarus_lite.records import dataclass
-from icarus_lite.symbols import Belief
+from icarus_lite.symbols import ATTACHED, Belief
 
 EQUALITIES = ("=", "/=")
 """The functions of `:tests` that PDDL has as well."""

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Hashable, Iterable
+from itertools import groupby
 
-_FOREIGN = r"[^a-z0-9_-]+"
+_LEGAL = frozenset("abcdefghijklmnopqrstuvwxyz0123456789_-")
 
 
 class Names:
@@ -43,5 +43,7 @@ def pddl_word(text: str, prefix: str = "n") -> str:
         >>> pddl_word("Hub.Cover 2"), pddl_word("0.31")
         ('hub-cover-2', 'n0-31')
     """
-    word = re.sub(_FOREIGN, "-", text.lower()).strip("-_") or prefix
+    parts = groupby(text.lower(), _LEGAL.__contains__)
+    word = "".join(["".join(part) if legal else "-" for legal, part in parts])
+    word = word.strip("-_") or prefix
     return word if word[0].isalpha() else prefix + word

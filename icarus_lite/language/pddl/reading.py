@@ -6,7 +6,6 @@ from collections.abc import Collection, Mapping
 from types import MappingProxyType
 
 from icarus_lite.language.checking.report import Report
-from icarus_lite.language.diagnostics import Diagnostic, has_errors, in_order
 from icarus_lite.language.pddl.formulas import checked_fact, effects, formula, note_costs
 from icarus_lite.language.pddl.nodes import Group, Node, Word, read_nodes
 from icarus_lite.language.pddl.scope import RefusedError, Scope, pairs, typed_list
@@ -23,6 +22,10 @@ from icarus_lite.language.pddl.syntax import (
 )
 from icarus_lite.language.syntax import NOWHERE, Source, Span
 from icarus_lite.language.wording import closest
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from icarus_lite.language.diagnostics import Diagnostic
 
 _DOMAIN_SECTIONS = (
     ":requirements",
@@ -60,8 +63,7 @@ def read_pddl_domain(source: Source) -> tuple[PddlDomain | None, tuple[Diagnosti
         domain: PddlDomain | None = _domain(Scope(report))
     except RefusedError:
         domain = None  # the reason is in the report
-    found = in_order(report.diagnostics)
-    return (None if has_errors(found) else domain), found
+    return (None if report.has_errors else domain), report.findings()
 
 
 def read_pddl_problem(
@@ -80,8 +82,7 @@ def read_pddl_problem(
         problem: PddlProblem | None = _problem(scope, domain)
     except RefusedError:
         problem = None  # the reason is in the report
-    found = in_order(report.diagnostics)
-    return (None if has_errors(found) else problem), found
+    return (None if report.has_errors else problem), report.findings()
 
 
 def _domain(scope: Scope) -> PddlDomain:

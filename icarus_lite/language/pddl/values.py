@@ -9,12 +9,11 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Sequence
 from typing import TypeAlias
 
-from icarus_lite.language.checking.vocabulary import ATTACHED
 from icarus_lite.language.pddl.attaching import Attaching, attachings
 from icarus_lite.language.pddl.kinds import planned_skills
 from icarus_lite.language.syntax import Atom, Condition, Constant, Domain, Term, Variable
 from icarus_lite.records import dataclass
-from icarus_lite.symbols import Belief, Value
+from icarus_lite.symbols import ATTACHED, Belief, Value
 
 Place: TypeAlias = tuple[str, int | str]
 """An argument of a predicate: its position, or the name of the attribute."""

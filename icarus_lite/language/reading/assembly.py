@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import PurePath
 from typing import TypeVar
 
+from icarus_lite.language.breakpoint import Breakpoint
 from icarus_lite.language.checking.report import Report
 from icarus_lite.language.diagnostics import Diagnostic
 from icarus_lite.language.older_names import MODERN_FIELDS, MODERN_FORMS
@@ -16,7 +17,6 @@ from icarus_lite.language.syntax import (
     Atom,
     AttachmentRule,
     Bind,
-    Breakpoint,
     Call,
     ConceptClause,
     Condition,

@@ -8,13 +8,9 @@ mistakes in the others.
 from __future__ import annotations
 
 import re
-from bisect import bisect_right
 
-from icarus_lite.language.syntax import Span
+from icarus_lite.language.reading.lines import MAX_DEPTH
 from icarus_lite.records import dataclass
-
-MAX_DEPTH = 100
-"""How deep parentheses may be nested. Real clauses need about ten."""
 
 MODERN_FORMS = (
     "domain",
@@ -48,28 +44,6 @@ _FORM_AT_MARGIN = rf"(?<![^\n])\((?:{'|'.join(FORM_NAMES)})(?=[ \t\n\r\f\v()\"';
 _FIRST_WORD = r"[^ \t\n\r\f\v()\"';]+"
 # Possessive, for a row of semicolons could be cut into comments in exponentially many ways.
 _NAMELESS = r"(?:[ \t\n\r\f\v]|;[^\n]*+|(?>#\|[\s\S]*?\|#))*+\(\s*\("
-
-
-class Lines:
-    """Turns offsets into lines and columns, for one text."""
-
-    def __init__(self, text: str) -> None:
-        self._text = text
-        self._starts = [0, *(match.end() for match in re.finditer("\n", text))]
-
-    def span(self, start: int, stop: int) -> Span:
-        """Give the span from one offset up to another, exclusive."""
-        first_line, first_column = self._place(start)
-        last_line, last_column = self._place(stop)
-        return Span(first_line, first_column, last_line, last_column)
-
-    def offset(self, line: int, column: int) -> int:
-        """Give the offset of a line and column, both counted from 1."""
-        return min(self._starts[line - 1] + column - 1, len(self._text))
-
-    def _place(self, offset: int) -> tuple[int, int]:
-        line = bisect_right(self._starts, offset)
-        return line, offset - self._starts[line - 1] + 1
 
 
 @dataclass(frozen=True, slots=True)

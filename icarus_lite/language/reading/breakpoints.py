@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterable
 
+from icarus_lite.language.breakpoint import Breakpoint, Moment
 from icarus_lite.language.checking.report import Report
 from icarus_lite.language.keywords import MOMENTS
 from icarus_lite.language.reading.parts import Clause, Word
-from icarus_lite.language.syntax import Breakpoint, Condition, Moment
+from icarus_lite.language.syntax import Condition
 from icarus_lite.language.wording import listing
 from icarus_lite.records import replace
 

@@ -12,11 +12,11 @@ from icarus_lite.language.diagnostics import Diagnostic, Severity
 from icarus_lite.language.reading.brackets import (
     FORM_NAMES,
     MODERN_FORMS,
-    Lines,
     first_word,
     innermost_open,
 )
 from icarus_lite.language.reading.habits import HABITS
+from icarus_lite.language.reading.lines import Lines
 from icarus_lite.language.reading.older import GONE_FIELDS, GONE_FORMS, PDDL_FIELDS
 from icarus_lite.language.reading.stumbles import (
     FIELD_TERMINALS,

@@ -9,8 +9,9 @@ import re
 from collections.abc import Iterator, Sequence
 
 from icarus_lite.language.diagnostics import Diagnostic, Severity
-from icarus_lite.language.reading.brackets import FORM_NAMES, Lines
+from icarus_lite.language.reading.brackets import FORM_NAMES
 from icarus_lite.language.reading.indentation import Token, tokens
+from icarus_lite.language.reading.lines import Lines
 from icarus_lite.language.reading.mending import Edit, EditKind, Mender, Mending, Parse
 from icarus_lite.language.reading.stumbles import shortened
 from icarus_lite.language.syntax import Span

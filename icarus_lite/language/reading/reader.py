@@ -15,16 +15,10 @@ from icarus_lite.language.diagnostics import (
     in_order,
 )
 from icarus_lite.language.reading.assembly import assemble
-from icarus_lite.language.reading.brackets import (
-    MAX_DEPTH,
-    Lines,
-    Scan,
-    Segment,
-    begins_nameless,
-    scan,
-)
+from icarus_lite.language.reading.brackets import Scan, Segment, begins_nameless, scan
 from icarus_lite.language.reading.explanations import explain, stands_inside
 from icarus_lite.language.reading.includes import expand, includes
+from icarus_lite.language.reading.lines import MAX_DEPTH, Lines
 from icarus_lite.language.reading.parentheses import Mended, mend_parentheses
 from icarus_lite.language.reading.parts import MalformedTermError, Outcome
 from icarus_lite.language.reading.stumbles import Stumble

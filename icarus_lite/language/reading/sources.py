@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import codecs
 
-from icarus_lite.language.diagnostics import Diagnostic, DomainError, Severity
 from icarus_lite.language.syntax import NOWHERE, Source, Span
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from pathlib import Path
+
+    from icarus_lite.language.diagnostics import DomainError
 
 MAX_BYTES = 10_000_000
 """The size of the largest file that is read. A domain of a thousand clauses takes 0.3 MB."""
@@ -58,8 +59,9 @@ def decode(data: bytes, path: str) -> Source:
     Raises:
         DomainError: The bytes are not UTF-8; the message names the place of the first bad one.
     """
+    data = data.removeprefix(codecs.BOM_UTF8)
     try:
-        text = data.decode("utf-8-sig")
+        text = data.decode("utf-8")
     except UnicodeDecodeError as error:
         for mark, name in _OTHER_ENCODINGS:
             if data.startswith(mark):
@@ -70,18 +72,21 @@ def decode(data: bytes, path: str) -> Source:
         column = len(before) - (before.rfind("\n") + 1) + 1
         shown = data.decode("utf-8", errors="replace")
         wrong = f"the byte 0x{data[error.start]:02x} is not UTF-8"
-        found = Diagnostic(
-            path,
-            Span(line, column, line, column + 1),
-            Severity.ERROR,
-            "ICR001",
-            wrong,
-            "save the file as UTF-8",
-        )
-        raise DomainError([found], Source(path, shown)) from None
+        place = Span(line, column, line, column + 1)
+        raise _error(Source(path, shown), place, wrong, "save the file as UTF-8") from None
     return Source(path, text.replace("\r\n", "\n").replace("\r", "\n"))
 
 
 def _unreadable(path: str, message: str, hint: str) -> DomainError:
-    found = Diagnostic(path, NOWHERE, Severity.ERROR, "ICR001", message, hint)
-    return DomainError([found], Source(path, ""))
+    return _error(Source(path, ""), NOWHERE, message, hint)
+
+
+def _error(source: Source, place: Span, message: str, hint: str) -> DomainError:
+    from icarus_lite.language.diagnostics import (  # noqa: PLC0415 - mostly nothing is wrong
+        Diagnostic,
+        DomainError,
+        Severity,
+    )
+
+    found = Diagnostic(source.path, place, Severity.ERROR, "ICR001", message, hint)
+    return DomainError([found], source)

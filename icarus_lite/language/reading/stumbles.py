@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 
-from icarus_lite.language.reading.brackets import FORM_NAMES, Lines
+from icarus_lite.language.reading.brackets import FORM_NAMES
+from icarus_lite.language.reading.lines import Lines
 from icarus_lite.language.wording import LONGEST_WORD
 from icarus_lite.records import dataclass
 

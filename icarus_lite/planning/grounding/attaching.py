@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from icarus_lite.inference import ATTACHED
 from icarus_lite.language.syntax import Atom, Constant, Domain, SkillClause, Term, Variable
 from icarus_lite.records import dataclass
-from icarus_lite.symbols import Value
+from icarus_lite.symbols import ATTACHED, Value
 
 Pair = tuple[Value, Value]
 """Child and parent."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from icarus_lite.inference import ATTACHED, ground
+from icarus_lite.inference import ground
 from icarus_lite.planning.grounding.clauses import GroundedClause, is_bound
 from icarus_lite.planning.grounding.facts import GIVEN, plain
 from icarus_lite.planning.grounding.hierarchy import Forest, NumberedEvent
@@ -12,6 +12,7 @@ from icarus_lite.planning.grounding.instances import Instance, Literals
 from icarus_lite.planning.grounding.merging import Merged
 from icarus_lite.planning.grounding.removals import Removals
 from icarus_lite.planning.grounding.views import Cells
+from icarus_lite.symbols import ATTACHED
 
 
 class Effects:

@@ -88,6 +88,10 @@ class FactBase:
             self._waiting[predicate].append(number)
         return number
 
+    def noter(self, predicate: str) -> Callable[[Cells, Attributes], int]:
+        """Give what notes facts of a predicate with attributes."""
+        return lambda args, attributes: self.note(predicate, args, attributes)
+
     def take_in(self) -> tuple[str, list[int]] | None:
         """Let joins see what waits of one predicate; give it, or None if nothing waits."""
         for predicate, waiting in self._waiting.items():

@@ -7,10 +7,9 @@ in one domain keeps.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import cache, partial
+from collections.abc import Iterable, Mapping, Sequence
 
-from icarus_lite.inference import ATTACHED, Evaluator
+from icarus_lite.inference import Evaluator
 from icarus_lite.language.syntax import (
     Atom,
     ConceptClause,
@@ -24,6 +23,7 @@ from icarus_lite.planning.grounding.facts import GIVEN, HELD
 from icarus_lite.planning.grounding.program import Program, compile_program
 from icarus_lite.planning.relevance import relevance
 from icarus_lite.records import dataclass, replace
+from icarus_lite.symbols import ATTACHED
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -31,6 +31,24 @@ if TYPE_CHECKING:
 
 GOAL = "goal "
 """Begins the name of a made-up concept that stands for goals with variables."""
+
+
+class LateClosure:
+    """What derives concepts, compiled when it is first asked for: most of PDDL needs none."""
+
+    __slots__ = ("_closure", "_concepts", "_evaluator")
+
+    def __init__(self, concepts: Sequence[ConceptClause], evaluator: Evaluator) -> None:
+        self._concepts, self._evaluator = concepts, evaluator
+        self._closure: Closure | None = None
+
+    def __call__(self) -> Closure:
+        """Give it; the same each time."""
+        if self._closure is None:
+            from icarus_lite.inference import Closure  # noqa: PLC0415 - see above
+
+            self._closure = Closure(self._concepts, self._evaluator)
+        return self._closure
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +74,7 @@ class Prepared:
     hierarchy: str
     recursive: Mapping[str, int]
     goals: tuple[Condition, ...]
-    closure: Callable[[], Closure]
+    closure: LateClosure
 
 
 class PlanningDomain:
@@ -141,7 +159,7 @@ def _prepare(
         hierarchy,
         _recursive(concepts),
         stood_for,
-        cache(partial(_closure, derived, evaluator)),
+        LateClosure(derived, evaluator),
     )
 
 
@@ -154,12 +172,6 @@ def _recursive(concepts: Sequence[ConceptClause]) -> Mapping[str, int]:
     recursive = stratification.recursive_concepts(concepts)
     groups = enumerate(stratification.strata(concepts))
     return {name: number for number, group in groups for name in group if name in recursive}
-
-
-def _closure(concepts: Sequence[ConceptClause], evaluator: Evaluator) -> Closure:
-    from icarus_lite.inference import Closure  # noqa: PLC0415 - most plans need no imagination
-
-    return Closure(concepts, evaluator)
 
 
 def _can_be_bound(clause: SkillClause) -> bool:

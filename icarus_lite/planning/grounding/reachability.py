@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from functools import partial
 
 from icarus_lite.errors import InferenceError
-from icarus_lite.inference import ATTACHED, Evaluator
+from icarus_lite.inference import Evaluator
 from icarus_lite.language.syntax import ConceptClause
 from icarus_lite.planning.beginning import Beginning
 from icarus_lite.planning.grounding.attaching import Attaching
@@ -15,7 +14,7 @@ from icarus_lite.planning.grounding.facts import GIVEN, HELD, FactBase, static_i
 from icarus_lite.planning.grounding.prepared import Prepared
 from icarus_lite.planning.grounding.views import Attributes, Cells, Index, sorted_attributes
 from icarus_lite.records import dataclass
-from icarus_lite.symbols import Action, Value
+from icarus_lite.symbols import ATTACHED, Action, Value
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -166,7 +165,7 @@ def _outlets(
     for place, atom in enumerate(clause.effects):
         predicate = atom.predicate
         if atom.attributes:
-            outlets[f"note{number}_{place}"] = partial(base.note, predicate)
+            outlets[f"note{number}_{place}"] = base.noter(predicate)
         else:
             outlets[f"numbers{number}_{place}"] = base.numbers_of(predicate)
     if clause.attaching is not None:

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from operator import itemgetter
 
-from icarus_lite.inference import ATTACHED
 from icarus_lite.language.syntax import Atom, Constant, Term
 from icarus_lite.planning.grounding.clauses import GroundedClause
 from icarus_lite.planning.grounding.facts import GIVEN, FactBase
 from icarus_lite.planning.grounding.prepared import Prepared
 from icarus_lite.planning.grounding.views import Cells, Index, view_of
 from icarus_lite.records import dataclass
+from icarus_lite.symbols import ATTACHED
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

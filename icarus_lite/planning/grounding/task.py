@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 
 from icarus_lite.language.syntax import Condition, Domain
 from icarus_lite.planning.beginning import Beginning
@@ -12,7 +12,7 @@ from icarus_lite.planning.grounding.facts import GIVEN, HELD
 from icarus_lite.planning.grounding.instances import Derivation, Instance, Literals
 from icarus_lite.planning.grounding.literals import Translation
 from icarus_lite.planning.grounding.operators import InstanceOperator
-from icarus_lite.planning.grounding.prepared import PlanningDomain
+from icarus_lite.planning.grounding.prepared import LateClosure, PlanningDomain
 from icarus_lite.planning.grounding.reachability import Reached, reach
 from icarus_lite.planning.grounding.rules import rules_of
 from icarus_lite.planning.grounding.simplification import Simplified, left_of, simplify
@@ -21,7 +21,6 @@ from icarus_lite.symbols import Action, Belief
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from icarus_lite.inference import Closure
     from icarus_lite.planning.grounding.closing import Closing
     from icarus_lite.planning.grounding.special_effects import Special
 
@@ -43,7 +42,7 @@ class Grounding:
     hopeless: tuple[Condition, ...]
     reached: Reached
     fluents: frozenset[str]
-    closure: Callable[[], Closure]
+    closure: LateClosure
 
     def could_hold(self) -> Iterator[Belief]:
         """Give the beliefs that could come about if nothing were ever undone."""

@@ -7,7 +7,8 @@ from collections import Counter
 
 from icarus_lite.inference import InferenceEngine, Memory
 from icarus_lite.language import check_domain, parse_domain
-from icarus_lite.symbols import Action, Outcome, Percept
+from icarus_lite.outcomes import Outcome
+from icarus_lite.symbols import Action, Percept
 
 DOMAIN, _ = parse_domain("""
 (percepts (object ^away))

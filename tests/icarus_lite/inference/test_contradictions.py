@@ -21,7 +21,8 @@ from icarus_lite.inference import (
 )
 from icarus_lite.language import check_domain, has_errors, parse_atom, parse_domain
 from icarus_lite.language.syntax import Domain
-from icarus_lite.symbols import Action, Belief, Outcome, Percept
+from icarus_lite.outcomes import Outcome
+from icarus_lite.symbols import Action, Belief, Percept
 
 HEAD = """
 (percepts (object ^x ^seen) (hand ^gripping))

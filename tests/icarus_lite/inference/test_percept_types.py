@@ -6,7 +6,8 @@ from icarus_lite.agent import Agent
 from icarus_lite.errors import FrameError
 from icarus_lite.inference import InferenceEngine, Memory
 from icarus_lite.language.reading.reader import parse_domain
-from icarus_lite.symbols import Action, Outcome, Percept
+from icarus_lite.outcomes import Outcome
+from icarus_lite.symbols import Action, Percept
 
 DOMAIN, _ = parse_domain("""
 (percepts (object ^x) (part :is object ^grip) (screw :is part) (hand))

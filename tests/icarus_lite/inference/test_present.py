@@ -10,7 +10,8 @@ from icarus_lite.inference.explaining.lookup import matching
 from icarus_lite.inference.present import PresentFacts
 from icarus_lite.language import parse_atom, parse_domain
 from icarus_lite.language.syntax import Atom, Constant, Variable
-from icarus_lite.symbols import Action, Belief, Outcome, Percept
+from icarus_lite.outcomes import Outcome
+from icarus_lite.symbols import Action, Belief, Percept
 
 DOMAIN, PROBLEMS = parse_domain("""
 (percepts (object ^x) (part :is object))

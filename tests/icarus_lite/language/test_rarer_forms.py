@@ -11,8 +11,9 @@ from icarus_lite.language import (
     parse_conditions,
     parse_domain,
 )
+from icarus_lite.language.breakpoint import Breakpoint, Moment
 from icarus_lite.language.keywords import MOMENTS
-from icarus_lite.language.syntax import Breakpoint, Condition, LongTermGoal, Moment, Task
+from icarus_lite.language.syntax import Condition, LongTermGoal, Task
 
 
 def read(text):

@@ -6,7 +6,8 @@ from hypothesis import strategies as st
 from icarus_lite.inference import Withdrawal
 from icarus_lite.inference.explaining import Chronicle, Period, what_ended
 from icarus_lite.language import parse_atom, parse_domain
-from icarus_lite.symbols import Action, Belief, Outcome, Status
+from icarus_lite.outcomes import Outcome, Status
+from icarus_lite.symbols import Action, Belief
 
 DOMAIN, PROBLEMS = parse_domain("""
 (percepts (hand) (object))

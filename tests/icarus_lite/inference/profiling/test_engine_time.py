@@ -8,7 +8,8 @@ from icarus_lite import InferenceError
 from icarus_lite.inference.network import compile_domain
 from icarus_lite.inference.profiling import DomainProfiler, engine_time
 from icarus_lite.language import parse_domain
-from icarus_lite.symbols import Action, Belief, Outcome, Percept
+from icarus_lite.outcomes import Outcome
+from icarus_lite.symbols import Action, Belief, Percept
 
 TEXT = """(percepts (object ^x ^y) (hand))
 (concepts

@@ -9,7 +9,8 @@ from icarus_lite.inference import FactStore, InferenceEngine, Matcher, Memory
 from icarus_lite.inference.network import compile_domain
 from icarus_lite.inference.profiling import DomainProfiler, Profiler, rule_plans
 from icarus_lite.language import parse_domain
-from icarus_lite.symbols import Action, Belief, Outcome, Percept
+from icarus_lite.outcomes import Outcome
+from icarus_lite.symbols import Action, Belief, Percept
 
 TEXT = """(percepts (object ^type ^x ^y) (hand))
 (concepts

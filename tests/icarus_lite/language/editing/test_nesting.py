@@ -2,7 +2,7 @@ from __future__ import annotations
 
 from icarus_lite.language.editing.lexemes import Lexeme, lexemes
 from icarus_lite.language.editing.nesting import Group, nest
-from icarus_lite.language.reading.brackets import MAX_DEPTH
+from icarus_lite.language.reading.lines import MAX_DEPTH
 
 
 def shape(node):

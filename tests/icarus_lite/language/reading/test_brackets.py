@@ -4,7 +4,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from icarus_lite.language.reading.brackets import MAX_DEPTH, Lines, first_word, innermost_open, scan
+from icarus_lite.language.reading.brackets import first_word, innermost_open, scan
+from icarus_lite.language.reading.lines import MAX_DEPTH, Lines
 from icarus_lite.language.syntax import Span
 
 

@@ -16,7 +16,8 @@ from icarus_lite.language import (
     parse_domain,
     render,
 )
-from icarus_lite.language.reading.brackets import FORM_NAMES, Lines
+from icarus_lite.language.reading.brackets import FORM_NAMES
+from icarus_lite.language.reading.lines import Lines
 from icarus_lite.language.reading.sources import decode
 from icarus_lite.language.syntax import (
     Atom,
