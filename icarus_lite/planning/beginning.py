@@ -53,8 +53,10 @@ def given_beginning(domain: Domain, init: Iterable[Atom]) -> Beginning:
 
     Raises:
         InferenceError: a test or a bind cannot be evaluated; the text has the place.
+        ValueError: the domain has contradictions.
     """
-    assert not domain.contradictions, "an engine has to weigh them"
+    if domain.contradictions:
+        raise ValueError("the domain has contradictions, which only an engine can weigh")
     init, evaluator = tuple(init), Evaluator()
     given = given_beliefs(domain, init)
     percepts = tuple(percept_facts(given_percepts(domain, init), lineages(domain.percepts)))

@@ -29,6 +29,13 @@ def test_other_encodings_are_named_where_they_name_themselves(encoding, name):
     )
 
 
+def test_a_bad_byte_after_a_byte_order_mark_is_found_where_it_stands():
+    for mark in (b"", b"\xef\xbb\xbf"):
+        with pytest.raises(DomainError) as caught:
+            decode(mark + b"(goals\n (\xff))", "d.icr")
+        assert "d.icr:2:3: error[ICR001]: the byte 0xff is not UTF-8" in str(caught.value)
+
+
 def test_a_file_that_is_too_large_is_refused_unread(tmp_path):
     path = tmp_path / "d.icr"
     path.write_bytes(b";" * MAX_BYTES)
