@@ -33,12 +33,13 @@ class Ending:
             return
         status = self.status
         try:
-            sys.stdout.flush()
+            if sys.stdout is not None and not sys.stdout.closed:  # a server may have closed it
+                sys.stdout.flush()
         except BrokenPipeError:
             pass  # whoever read it has enough
-        except (OSError, ValueError) as error:
+        except OSError as error:
             if status != _BAD_INPUT:  # else it was told already why
-                reason = getattr(error, "strerror", None) or error
+                reason = error.strerror or error
                 os.write(_STANDARD_ERROR, f"standard output: {reason}\n".encode())
             status = _BAD_INPUT
         os._exit(status)

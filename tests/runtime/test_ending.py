@@ -45,6 +45,10 @@ def test_others_are_told_and_threads_have_their_time() -> None:
     assert run(code) == (3, "done\ntold\n", "")
 
 
+def test_who_has_closed_the_output_is_not_blamed() -> None:
+    assert run("print('all'); sys.stdout.close(); ending.status = 0") == (0, "all\n", "")
+
+
 def test_an_error_ends_as_usual() -> None:
     status, printed, told = run("print('before'); raise LookupError('nobody')")
     assert (status, printed) == (1, "before\n")
